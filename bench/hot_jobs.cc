@@ -69,7 +69,7 @@ void HotJobs::rungeKutta() {
 }
 
 void HotJobs::configurations() {
-  SystemConfiguration<1> configuration(elbow_.arm);
+  SystemConfiguration<1> configuration(elbow_.system);
   Eigen::Matrix<double, 1, 1> q(0.9);
   for (int i = 0; i < 1000; ++i) {
     configuration.moveTo(q);
@@ -79,8 +79,8 @@ void HotJobs::configurations() {
 }
 
 void HotJobs::sensitivities(const std::vector<std::size_t>& wanted) {
-  keep(simulateWithSensitivities(elbow_.arm, elbow_.catalogue, setting_, wanted, elbow_.excitation,
-                                 {options(), false})
+  keep(simulateWithSensitivities(elbow_.system, elbow_.catalogue, setting_, wanted,
+                                 elbow_.excitation, {options(), false})
            .q);
 }
 void HotJobs::sensitivitiesOf60() {

@@ -13,11 +13,11 @@ struct Job {
   explicit Job(const std::string& file = "elbow8.osim")
       : model(bio::readOsim(root + "/models/" + file)) {}
   bio::Model model;
-  bio::MusculoskeletalSystem arm{model, {{{"elbow_flexion"}, {}}, {}, {}}};
+  bio::MusculoskeletalSystem system{model, {{{"elbow_flexion"}, {}}, {}, {}}};
   bio::Trial trial = bio::readTrial(root + "/emg_data/curl_slow.sto", model);
-  bio::ExcitationSignal excitation = bio::excitationOf(trial, arm);
+  bio::ExcitationSignal excitation = bio::excitationOf(trial, system);
   bio::SystemState start =
-      bio::initialState(arm, bio::startCoordinates(trial, arm, {}), excitation, 0);
+      bio::initialState(system, bio::startCoordinates(trial, system, {}), excitation, 0);
 };
 
 void replay(benchmark::State& state, bio::Integrator integrator, double step,
@@ -28,7 +28,7 @@ void replay(benchmark::State& state, bio::Integrator integrator, double step,
   options.step = step;
   options.duration = 4.5;
   for (auto _ : state) {
-    const bio::Trajectory motion = bio::simulate(job.arm, job.excitation, job.start, options);
+    const bio::Trajectory motion = bio::simulate(job.system, job.excitation, job.start, options);
     benchmark::DoNotOptimize(motion.q.data());
     state.counters["newton_per_step"] =
         static_cast<double>(motion.newtonIterations) / static_cast<double>(motion.steps);
@@ -56,7 +56,7 @@ BENCHMARK_CAPTURE(ofClass, DeGroote, "elbow8_DeGrooteFregly2016.osim")
 /// All that a configuration needs: placements, inertia, eight path lengths with Hessians.
 void configuration(benchmark::State& state) {
   const Job job;
-  bio::SystemConfiguration<1> configuration(job.arm);
+  bio::SystemConfiguration<1> configuration(job.system);
   Eigen::Matrix<double, 1, 1> q(0.9);
   for (auto _ : state) {
     configuration.moveTo(q);
@@ -75,7 +75,7 @@ void coordinates(benchmark::State& state) {
   options.step = 0.01;
   options.duration = 0.5;
   for (auto _ : state) {
-    const bio::Trajectory motion = bio::simulate(c.arm, c.excitation, c.start, options);
+    const bio::Trajectory motion = bio::simulate(c.system, c.excitation, c.start, options);
     benchmark::DoNotOptimize(motion.q.data());
   }
 }

@@ -20,7 +20,7 @@ void simulation(benchmark::State& state) {
   const auto setting = elbow.catalogue.nominal();
   for (auto _ : state) {
     const bio::Trajectory motion =
-        bio::simulateSetting(elbow.arm, setting, elbow.excitation, options());
+        bio::simulateSetting(elbow.system, setting, elbow.excitation, options());
     benchmark::DoNotOptimize(motion.q.data());
   }
 }
@@ -34,7 +34,7 @@ void sensitivities(benchmark::State& state, const std::vector<std::string>& patt
   const auto wanted = elbow.catalogue.select(patterns);
   for (auto _ : state) {
     const bio::SensitivityTrajectory s = bio::simulateWithSensitivities(
-        elbow.arm, elbow.catalogue, setting, wanted, elbow.excitation, {options(), muscles});
+        elbow.system, elbow.catalogue, setting, wanted, elbow.excitation, {options(), muscles});
     benchmark::DoNotOptimize(s.q[0].data());
   }
   state.counters["parameters"] = static_cast<double>(wanted.size());
@@ -59,11 +59,11 @@ void gradient(benchmark::State& state, const std::vector<std::string>& patterns)
   const auto wanted = elbow.catalogue.select(patterns);
   const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(451, 0, 4.5);
   const bio::MotionCost cost = bio::leastSquaresCost(
-      elbow.arm, {{{bio::Observable::Kind::coordinate, "elbow_flexion", 0}, times}},
+      elbow.system, {{{bio::Observable::Kind::coordinate, "elbow_flexion", 0}, times}},
       Eigen::VectorXd::Constant(times.size(), 1), Eigen::VectorXd::Constant(times.size(), 0.02));
   for (auto _ : state) {
     const bio::CostGradient g = bio::simulateWithGradient(
-        elbow.arm, elbow.catalogue, setting, wanted, elbow.excitation, options(), cost);
+        elbow.system, elbow.catalogue, setting, wanted, elbow.excitation, options(), cost);
     benchmark::DoNotOptimize(g.gradient.data());
   }
   state.counters["parameters"] = static_cast<double>(wanted.size());
@@ -74,8 +74,8 @@ BENCHMARK_CAPTURE(gradient, of_a_cost_in_one, {"TRI.radius"})->Unit(benchmark::k
 void compileArm(benchmark::State& state) {
   const ShippedElbow elbow;
   for (auto _ : state) {
-    const bio::MusculoskeletalSystem arm(elbow.model, ShippedElbow::options());
-    benchmark::DoNotOptimize(arm.numMuscles());
+    const bio::MusculoskeletalSystem system(elbow.model, ShippedElbow::options());
+    benchmark::DoNotOptimize(system.numMuscles());
   }
 }
 BENCHMARK(compileArm)->Unit(benchmark::kMillisecond);

@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "arms.h"
+#include "systems.h"
 #include "bio/calibration/calibrate_at_shorter_steps.h"
 #include "bio/calibration/calibrated_model.h"
 #include "bio/calibration/predicted_series.h"
@@ -31,14 +31,16 @@ py::object intervalOf(double lower, double upper) {
   return py::make_tuple(lower, upper);
 }
 
-py::object estimateOf(const bio::CalibratedParameter& one) {
+py::object estimateOf(const bio::CalibratedParameter& parameter) {
   const double none = std::numeric_limits<double>::quiet_NaN();
-  return results("value"_a = one.value, "sd"_a = one.sd, "lower"_a = one.lower,
-                 "upper"_a = one.upper, "unit"_a = one.asked.unit, "model"_a = one.model,
-                 "identifiable"_a = one.identifiable, "at_bound"_a = one.atBound, "why"_a = one.why,
-                 "profile"_a = one.profile ? intervalOf(one.profile->lower, one.profile->upper)
-                                           : intervalOf(none, none),
-                 "bootstrap"_a = intervalOf(one.bootstrapLower, one.bootstrapUpper));
+  return results("value"_a = parameter.value, "sd"_a = parameter.sd, "lower"_a = parameter.lower,
+                 "upper"_a = parameter.upper, "unit"_a = parameter.asked.unit,
+                 "model"_a = parameter.model, "identifiable"_a = parameter.identifiable,
+                 "at_bound"_a = parameter.atBound, "why"_a = parameter.why,
+                 "profile"_a = parameter.profile
+                                   ? intervalOf(parameter.profile->lower, parameter.profile->upper)
+                                   : intervalOf(none, none),
+                 "bootstrap"_a = intervalOf(parameter.bootstrapLower, parameter.bootstrapUpper));
 }
 
 /// [rad]; NaN without trials.
@@ -85,7 +87,7 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
                      int threads, const std::vector<std::string>& profile, int bootstrap,
                      const Names& coordinate, const std::map<std::string, double>& lock,
                      const std::string& integrator, std::optional<double> step) {
-  const SystemChoice choice = armChoice(model, trials, coordinate, lock, integrator, step);
+  const SystemChoice choice = systemChoice(model, trials, coordinate, lock, integrator, step);
   for (const auto* set : {&trials, &holdOut})
     for (const bio::Trial& trial : *set) mustBeOfTheModelAsItIs(trial);
   bio::requireDifferentTrials(trials, holdOut);
@@ -110,23 +112,25 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
   interruptible([&](const std::atomic<bool>& goOn) {
     options.progress = [&](double) { return goOn.load(); };
     stepped = bio::calibrateAtShorterSteps(
-        model, choice.armOptions(), declaring(trials, latent), holdOut, options,
+        model, choice.systemOptions(), declaring(trials, latent), holdOut, options,
         step ? std::numeric_limits<double>::infinity() : bio::shortestCalibrationStep);
   });
   const bio::Calibration& found = stepped.calibration;
   if (!found.failure.empty()) throw std::runtime_error(found.failure);
   std::optional<bio::CalibratedModel> calibrated;
   if (found.calibrated) {
-    calibrated = bio::calibratedModel(*stepped.training, stepped.heldOut.get(), choice.armOptions(),
-                                      stepped.options.trials.simulation, found);
+    calibrated =
+        bio::calibratedModel(*stepped.training, stepped.heldOut.get(), choice.systemOptions(),
+                             stepped.options.trials.simulation, found);
   }
   py::list minima;
-  for (const bio::OtherMinimum& one : found.otherMinima) {
-    minima.append(
-        results("values"_a = one.values, "nats"_a = one.difference, "nats_of_data"_a = one.ofData));
+  for (const bio::OtherMinimum& minimum : found.otherMinima) {
+    minima.append(results("values"_a = minimum.values, "nats"_a = minimum.difference,
+                          "nats_of_data"_a = minimum.ofData));
   }
   py::dict estimates;
-  for (const auto& one : found.parameters) estimates[one.asked.name.c_str()] = estimateOf(one);
+  for (const auto& parameter : found.parameters)
+    estimates[parameter.asked.name.c_str()] = estimateOf(parameter);
   return results("estimates"_a = estimates, "correlation"_a = found.correlation,
                  "other_minima"_a = minima, "step"_a = stepped.options.trials.simulation.step,
                  "converged"_a = found.converged, "why"_a = info::describe(found.why),

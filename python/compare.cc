@@ -6,7 +6,7 @@
 
 #include "arguments/columns.h"
 #include "arguments/file_name.h"
-#include "arms.h"
+#include "systems.h"
 #include "bio/analysis/compare_muscles.h"
 #include "bio/analysis/coordinate_curve.h"
 #include "bio/analysis/replay.h"
@@ -105,7 +105,7 @@ PreparedTrial prepared(const bio::Model& model, const bio::Trial& trial, const S
   }
   mustBeOfTheModelAsItIs(trial);
   bio::requireLoadsCover(model.externalLoads, trial.times[0], trial.times[0] + trial.duration());
-  bio::MusculoskeletalSystem system(model, choice.armOptions());
+  bio::MusculoskeletalSystem system(model, choice.systemOptions());
   bio::RecordedTrial recorded =
       bio::recordedTrial(trial, system, during(trial, choice.simulation()));
   bio::StartPoint start = bio::beginningOf(trial, model, system, initial).point;
@@ -157,7 +157,8 @@ py::object comparisonOf(const bio::Comparison& comparison, const bio::Musculoske
                 "errors"_a = arrayOf(order.errors));
   }
   std::vector<std::string> coordinates, warnings = system.warnings();
-  for (const auto& one : system.skeleton().coordinates()) coordinates.push_back(one.name);
+  for (const auto& coordinate : system.skeleton().coordinates())
+    coordinates.push_back(coordinate.name);
   if (const auto left = bio::leftRange(system, comparison.reference.motion)) {
     warnings.push_back(left->what);
   }
@@ -172,7 +173,7 @@ py::object compare(const bio::Model& model, const bio::Trial& trial,
                    int timings, const std::map<std::string, OtherMotion>& also,
                    const std::map<std::string, double>& initial, const Names& coordinate,
                    const std::map<std::string, double>& lock) {
-  const SystemChoice choice = armChoice(model, {trial}, coordinate, lock, "vi", {});
+  const SystemChoice choice = systemChoice(model, {trial}, coordinate, lock, "vi", {});
   bio::CompareOptions options;
   options.integrators.clear();
   for (const std::string& name : integrators) {
@@ -204,27 +205,28 @@ py::object compare(const bio::Model& model, const bio::Trial& trial,
   return comparisonOf(comparison, at->system, options, *others);
 }
 
-py::object classOf(const bio::MuscleClassMotion& one) {
+py::object classOf(const bio::MuscleClassMotion& motion) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const bool isThere = one.motion.outcome == bio::Outcome::completed;
+  const bool isThere = motion.motion.outcome == bio::Outcome::completed;
   py::dict bounds;
-  for (std::size_t i = 0; i < one.information.parameters.size(); ++i) {
-    const info::Parameter& p = one.information.parameters[i];
+  for (std::size_t i = 0; i < motion.information.parameters.size(); ++i) {
+    const info::Parameter& p = motion.information.parameters[i];
     bounds[p.name.c_str()] =
         results("value"_a = p.start, "unit"_a = p.unit,
-                "sd"_a = one.information.boundJoint[static_cast<Eigen::Index>(i)]);
+                "sd"_a = motion.information.boundJoint[static_cast<Eigen::Index>(i)]);
   }
-  return results("name"_a = one.name, "outcome"_a = bio::name(one.motion.outcome),
-                 "why"_a = one.motion.why, "lost"_a = one.lost,
-                 "rms"_a = isThere ? one.difference.rms : nan,
-                 "max"_a = isThere ? one.difference.largest : nan,
-                 "max_at"_a = isThere ? one.difference.largestAt : nan,
-                 "measured_rms"_a = isThere ? one.measured : nan,
-                 "unexplained_rms"_a = isThere ? one.unexplained : nan,
-                 "determined_combinations"_a = one.information.determinedCombinations,
-                 "bounds"_a = bounds, "wall"_a = isThere ? one.motion.wallSeconds : nan,
-                 "energy_error"_a = isThere ? one.energyError : nan,
-                 "time"_a = arrayOf(one.motion.time), "q"_a = one.motion.q.transpose().eval());
+  return results("name"_a = motion.name, "outcome"_a = bio::name(motion.motion.outcome),
+                 "why"_a = motion.motion.why, "lost"_a = motion.lost,
+                 "rms"_a = isThere ? motion.difference.rms : nan,
+                 "max"_a = isThere ? motion.difference.largest : nan,
+                 "max_at"_a = isThere ? motion.difference.largestAt : nan,
+                 "measured_rms"_a = isThere ? motion.measured : nan,
+                 "unexplained_rms"_a = isThere ? motion.unexplained : nan,
+                 "determined_combinations"_a = motion.information.determinedCombinations,
+                 "bounds"_a = bounds, "wall"_a = isThere ? motion.motion.wallSeconds : nan,
+                 "energy_error"_a = isThere ? motion.energyError : nan,
+                 "time"_a = arrayOf(motion.motion.time),
+                 "q"_a = motion.motion.q.transpose().eval());
 }
 
 py::list compareMuscles(const bio::Model& model, const bio::Trial& trial,
@@ -232,7 +234,7 @@ py::list compareMuscles(const bio::Model& model, const bio::Trial& trial,
                         const std::map<std::string, double>& initial, const Names& coordinate,
                         const std::map<std::string, double>& lock, const std::string& integrator,
                         std::optional<double> step) {
-  const SystemChoice choice = armChoice(model, {trial}, coordinate, lock, integrator, step);
+  const SystemChoice choice = systemChoice(model, {trial}, coordinate, lock, integrator, step);
   if (!integrator.starts_with("vi")) {
     throw std::invalid_argument(fmt::format(
         "integrator '{}', must be vi or vi-left, which have sensitivities", integrator));
@@ -242,7 +244,7 @@ py::list compareMuscles(const bio::Model& model, const bio::Trial& trial,
     const PreparedTrial at = prepared(model, trial, choice, initial);
     const std::string& measured = choice.coordinates.front();
     found = bio::compareMuscleClasses(
-        model, choice.armOptions(), classes,
+        model, choice.systemOptions(), classes,
         {.recorded = at.recorded,
          .start = at.start,
          .coordinate = measured,
@@ -251,7 +253,7 @@ py::list compareMuscles(const bio::Model& model, const bio::Trial& trial,
          .progress = stoppable(goOn)});
   });
   py::list list;
-  for (const bio::MuscleClassMotion& one : found) list.append(classOf(one));
+  for (const bio::MuscleClassMotion& motion : found) list.append(classOf(motion));
   return list;
 }
 

@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "arguments/columns.h"
-#include "arms.h"
+#include "systems.h"
 #include "bio/analysis/replay.h"
 #include "bio/analysis/sensitivity_study.h"
 #include "bio/design/design_setup.h"
@@ -43,7 +43,7 @@ struct SearchInputs {
   Range range;
   OneOrNamed speed;
 
-  bio::DesignLimits limits(const bio::MusculoskeletalSystem& arm) const {
+  bio::DesignLimits limits(const bio::MusculoskeletalSystem& system) const {
     bio::DesignLimits limits;
     limits.torqueRate = torqueRate;
     limits.largestExcitation = excitationMax;
@@ -53,15 +53,15 @@ struct SearchInputs {
     given.torque = byName<double>(torque);
     // what is not named has the default
     for (const auto& [name, value] : byName<double>(speed)) given.speed[name] = value;
-    return bio::withCoordinates(limits, arm, given);
+    return bio::withCoordinates(limits, system, given);
   }
 
   std::vector<bio::ChannelCandidate> observed(const bio::Model& model,
-                                              const bio::MusculoskeletalSystem& arm) const {
+                                              const bio::MusculoskeletalSystem& system) const {
     if (!observe.empty()) {
-      return bio::observedChannels({observe.begin(), observe.end()}, model, arm);
+      return bio::observedChannels({observe.begin(), observe.end()}, model, system);
     }
-    return bio::freeCoordinates(arm, noise, noise);
+    return bio::freeCoordinates(system, noise, noise);
   }
 };
 
@@ -102,13 +102,13 @@ py::object each(const List& list, const Number& number) {
 
 std::vector<std::string> namesOf(const std::vector<bio::ChannelCandidate>& observed) {
   std::vector<std::string> names;
-  for (const bio::ChannelCandidate& one : observed) names.push_back(nameOf(one.what));
+  for (const bio::ChannelCandidate& candidate : observed) names.push_back(nameOf(candidate.what));
   return names;
 }
 
 std::vector<std::string> namesOf(const std::vector<bio::CoordinateLimits>& limits) {
   std::vector<std::string> names;
-  for (const bio::CoordinateLimits& one : limits) names.push_back(one.coordinate);
+  for (const bio::CoordinateLimits& limit : limits) names.push_back(limit.coordinate);
   return names;
 }
 
@@ -131,14 +131,14 @@ py::object monteCarloOf(const std::optional<info::MonteCarloResult>& found) {
 }
 
 py::object largestTorques(const bio::DesignInputs& inputs, const bio::Trial& trial) {
-  return each(inputs.limits().coordinates, [&](const bio::CoordinateLimits& one) {
-    return inputs.largestTorque(trial, one.coordinate);
+  return each(inputs.limits().coordinates, [&](const bio::CoordinateLimits& limits) {
+    return inputs.largestTorque(trial, limits.coordinate);
   });
 }
 
 py::object largestTorqueRates(const bio::DesignInputs& inputs, const bio::Trial& trial) {
-  return each(inputs.limits().coordinates, [&](const bio::CoordinateLimits& one) {
-    return inputs.largestTorqueRate(trial, one.coordinate);
+  return each(inputs.limits().coordinates, [&](const bio::CoordinateLimits& limits) {
+    return inputs.largestTorqueRate(trial, limits.coordinate);
   });
 }
 
@@ -156,7 +156,7 @@ py::object designed(const bio::ExperimentDesign& search, const bio::DesignResult
     units.push_back(catalogue.parameters()[index].unit);
   }
   const bio::DesignedExperiment& e = found.after;
-  const bio::Table table = bio::plannedTable(search.arm(), e.trial);
+  const bio::Table table = bio::plannedTable(search.system(), e.trial);
   const bio::DesignInputs& inputs = search.inputs();
   const auto& limits = inputs.limits().coordinates;
   const auto ofRange = [&](double bio::MotionRange::*number) {
@@ -198,7 +198,7 @@ py::object design(const bio::Model& model, const bio::Trial& trial,
                   const std::map<std::string, double>& initial, const Names& coordinate,
                   const std::map<std::string, double>& lock, const std::string& integrator,
                   std::optional<double> step) {
-  const SystemChoice choice = armChoice(model, {trial}, coordinate, lock, integrator, step);
+  const SystemChoice choice = systemChoice(model, {trial}, coordinate, lock, integrator, step);
   mustBeOfTheModelAsItIs(trial);
   if (monteCarlo < 0 || (monteCarlo > 0 && !nuisance.empty())) {
     throw std::invalid_argument(
@@ -209,22 +209,22 @@ py::object design(const bio::Model& model, const bio::Trial& trial,
   bio::DesignQuestion question;
   question.period = periodOf(rate);
   question.criterion = bio::optimalityNamed(criterion);
-  std::optional<bio::MusculoskeletalSystem> arm;
+  std::optional<bio::MusculoskeletalSystem> system;
   std::optional<bio::ParameterCatalogue> catalogue;
   std::optional<bio::ExperimentDesign> search;
   std::optional<info::MonteCarloResult> repeated;
   bio::DesignResult found;
   interruptible([&](const std::atomic<bool>& goOn) {
-    arm.emplace(model, choice.armOptions());
-    const Eigen::VectorXd start = bio::beginningOf(trial, model, *arm, initial).point.q;
-    catalogue.emplace(model, *arm, bio::StartPoint{start, {}});
-    question.observed = inputs.observed(model, *arm);
-    bio::DesignLimits limits = inputs.limits(*arm);
+    system.emplace(model, choice.systemOptions());
+    const Eigen::VectorXd start = bio::beginningOf(trial, model, *system, initial).point.q;
+    catalogue.emplace(model, *system, bio::StartPoint{start, {}});
+    question.observed = inputs.observed(model, *system);
+    bio::DesignLimits limits = inputs.limits(*system);
     limits.surprise = surprise;
     const bio::SimulationOptions simulation = during(trial, choice.simulation());
-    search.emplace(*arm, *catalogue, catalogue->nominal(), trial, simulation,
+    search.emplace(*system, *catalogue, catalogue->nominal(), trial, simulation,
                    bio::designQuestion(*catalogue, {parameters, nuisance, priors, prior}, question),
-                   limits, bio::muscleGroups(*arm, start, excite), knots);
+                   limits, bio::muscleGroups(*system, start, excite), knots);
     found = search->search(settingsOf(candidates, generations, iterations, seed, threads, goOn));
     if (monteCarlo == 0 || found.stopped) return;
     info::MonteCarloOptions repetitions;
@@ -232,7 +232,7 @@ py::object design(const bio::Model& model, const bio::Trial& trial,
     repetitions.seed = seed;
     repetitions.threads = threads;
     repetitions.progress = [&](int, int) { return goOn.load(); };
-    repeated = bio::simulatedRepetitions(*search, found.after, *catalogue, choice.armOptions(),
+    repeated = bio::simulatedRepetitions(*search, found.after, *catalogue, choice.systemOptions(),
                                          simulation, repetitions);
   });
   return designed(*search, found, *catalogue, model, repeated);
@@ -250,7 +250,7 @@ py::object separated(const bio::discover::SeparatingDesign& search,
   const auto& before = found.before.tells;
   const auto& after = found.after.tells;
   const bio::discover::SeparatingExperiment& e = found.after;
-  const bio::Table table = bio::plannedTable(search.arm(), e.trial);
+  const bio::Table table = bio::plannedTable(search.system(), e.trial);
   const bio::DesignInputs& inputs = search.inputs();
   const auto ofRange = [&](double bio::discover::SeparatingExperiment::Range::*number) {
     return each(e.ranges, [&](const auto& range) { return range.*number; });
@@ -291,7 +291,7 @@ py::object separate(const bio::Model& model, const bio::Trial& trial, const std:
                     const std::map<std::string, double>& initial, const Names& coordinate,
                     const std::map<std::string, double>& lock, const std::string& integrator,
                     std::optional<double> step) {
-  const SystemChoice choice = armChoice(model, {trial}, coordinate, lock, integrator, step);
+  const SystemChoice choice = systemChoice(model, {trial}, coordinate, lock, integrator, step);
   const SearchInputs inputs{observe,       noise,          torque, torqueRate, excite,
                             excitationMax, excitationRate, range,  speed};
   bio::discover::SeparationQuestion question;
@@ -302,16 +302,16 @@ py::object separate(const bio::Model& model, const bio::Trial& trial, const std:
   std::optional<bio::discover::SeparatingDesign> search;
   bio::discover::SeparatingResult found;
   interruptible([&](const std::atomic<bool>& goOn) {
-    const bio::MusculoskeletalSystem arm(model, choice.armOptions());
-    const Eigen::VectorXd start = bio::startCoordinates(trial, arm, initial);
+    const bio::MusculoskeletalSystem system(model, choice.systemOptions());
+    const Eigen::VectorXd start = bio::startCoordinates(trial, system, initial);
     for (Eigen::Index i = 0; i < start.size(); ++i) {
-      question.start[arm.skeleton().coordinates()[static_cast<std::size_t>(i)].name] = start[i];
+      question.start[system.skeleton().coordinates()[static_cast<std::size_t>(i)].name] = start[i];
     }
-    question.observed = inputs.observed(model, arm);
+    question.observed = inputs.observed(model, system);
     bio::discover::MusculoskeletalProblemOptions options;
     options.simulation = during(trial, choice.simulation());
-    search.emplace(model, choice.armOptions(), trial, options, question, inputs.limits(arm),
-                   bio::muscleGroups(arm, arm.skeleton().defaultValues(), excite), knots);
+    search.emplace(model, choice.systemOptions(), trial, options, question, inputs.limits(system),
+                   bio::muscleGroups(system, system.skeleton().defaultValues(), excite), knots);
     found = search->search(settingsOf(candidates, generations, 0, seed, threads, goOn));
   });
   return separated(*search, found, model);

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "arguments/columns.h"
-#include "arms.h"
+#include "systems.h"
 #include "bio/design/dynamometer_question.h"
 #include "bio/skeleton/free_coordinates.h"
 #include "docstrings.h"
@@ -30,23 +30,24 @@ SystemChoice dynamometerChoice(const bio::Model& model, const std::string& coord
     throw std::invalid_argument(fmt::format(
         "'{}' is prescribed by the model, which a dynamometer does not take: lock it", name));
   }
-  SystemChoice choice = armChoice(model, {}, coordinate, lock, integrator, step);
+  SystemChoice choice = systemChoice(model, {}, coordinate, lock, integrator, step);
   choice.coordinates.clear();
   choice.prescribed = {coordinate};
   return choice;
 }
 
-py::object experimentOf(const bio::DynamometerExperiment& one, double information,
+py::object experimentOf(const bio::DynamometerExperiment& experiment, double information,
                         const Eigen::VectorXd& bounds, const bio::Coordinate& coordinate,
                         const bio::Model& model) {
   bio::TrialOptions options;
-  if (!one.measuresAngle()) options.prescribed = {coordinate.name};
+  if (!experiment.measuresAngle()) options.prescribed = {coordinate.name};
   return results(
-      "kind"_a = bio::name(one.kind), "start"_a = one.from, "end"_a = one.to, "speed"_a = one.speed,
-      "muscles"_a = one.group, "effort"_a = one.effort, "load"_a = one.load,
-      "torque"_a = one.torque, "instruction"_a = bio::instructionOf(one, coordinate.isRotation),
-      "information"_a = information, "bounds"_a = bounds, "columns"_a = columnsOf(one.trial),
-      "trial"_a = trialOf(one.trial, "dynamometer", model, options));
+      "kind"_a = bio::name(experiment.kind), "start"_a = experiment.from, "end"_a = experiment.to,
+      "speed"_a = experiment.speed, "muscles"_a = experiment.group, "effort"_a = experiment.effort,
+      "load"_a = experiment.load, "torque"_a = experiment.torque,
+      "instruction"_a = bio::instructionOf(experiment, coordinate.isRotation),
+      "information"_a = information, "bounds"_a = bounds, "columns"_a = columnsOf(experiment.trial),
+      "trial"_a = trialOf(experiment.trial, "dynamometer", model, options));
 }
 
 py::object designOnDynamometer(const bio::Model& model, const std::string& coordinate,
@@ -82,18 +83,18 @@ py::object designOnDynamometer(const bio::Model& model, const std::string& coord
   question = bio::withDefaults(std::move(question), moved, releaseSpeed);
   bio::DynamometerPlan plan;
   interruptible([&](const std::atomic<bool>& goOn) {
-    const bio::MusculoskeletalSystem arm(model, choice.armOptions());
+    const bio::MusculoskeletalSystem system(model, choice.systemOptions());
     bio::SimulationOptions simulation = choice.simulation();
     simulation.duration = 1;
     simulation.progress = [&](double) { return goOn.load(); };
-    plan = bio::planOnDynamometer(model, arm, choice.armOptions(), simulation, question);
+    plan = bio::planOnDynamometer(model, system, choice.systemOptions(), simulation, question);
   });
   std::vector<std::string> names, units;
   Eigen::VectorXd before(std::ssize(plan.parameters));
-  for (const bio::ModelParameter& one : plan.parameters) {
-    before[std::ssize(names)] = one.sd;
-    names.push_back(one.name);
-    units.push_back(one.unit);
+  for (const bio::ModelParameter& parameter : plan.parameters) {
+    before[std::ssize(names)] = parameter.sd;
+    names.push_back(parameter.name);
+    units.push_back(parameter.unit);
   }
   py::list chosen;
   for (std::size_t n = 0; n < plan.chosen.size(); ++n) {

@@ -4,7 +4,7 @@
 
 #include "arguments/columns.h"
 #include "arguments/file_name.h"
-#include "arms.h"
+#include "systems.h"
 #include "bio/emg/emg_config.h"
 #include "bio/emg/emg_recordings.h"
 #include "bio/emg/emg_trial.h"
@@ -17,12 +17,12 @@ namespace {
 
 py::dict electrodesOf(const bio::EmgResult& result) {
   py::dict electrodes;
-  for (const bio::ElectrodeTrace& one : result.electrodes) {
-    electrodes[one.channel.c_str()] =
-        results("unit"_a = one.unit, "rate"_a = one.rate, "start_time"_a = one.startTime,
-                "filtered"_a = one.filtered, "envelope"_a = one.envelope, "full"_a = one.full,
-                "full_source"_a = one.fullSource, "fraction_below"_a = one.fractionBelow,
-                "fraction_above"_a = one.fractionAbove, "excitation"_a = one.excitation);
+  for (const bio::ElectrodeTrace& trace : result.electrodes) {
+    electrodes[trace.channel.c_str()] =
+        results("unit"_a = trace.unit, "rate"_a = trace.rate, "start_time"_a = trace.startTime,
+                "filtered"_a = trace.filtered, "envelope"_a = trace.envelope, "full"_a = trace.full,
+                "full_source"_a = trace.fullSource, "fraction_below"_a = trace.fractionBelow,
+                "fraction_above"_a = trace.fractionAbove, "excitation"_a = trace.excitation);
   }
   return electrodes;
 }
@@ -69,9 +69,10 @@ py::object readRecording(const FileName& file) {
     }
   }
   py::list channels;
-  for (const bio::Channel& one : recorded.channels) {
-    channels.append(results("name"_a = one.name, "unit"_a = one.unit, "rate"_a = one.rate,
-                            "start_time"_a = one.startTime, "values"_a = one.values));
+  for (const bio::Channel& channel : recorded.channels) {
+    channels.append(results("name"_a = channel.name, "unit"_a = channel.unit,
+                            "rate"_a = channel.rate, "start_time"_a = channel.startTime,
+                            "values"_a = channel.values));
   }
   return results("markers"_a = markers, "times"_a = times,
                  "frame_rate"_a = recorded.markers ? recorded.markers->rate

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "arms.h"
+#include "systems.h"
 #include "bio/analysis/ensemble_statistics.h"
 #include "bio/analysis/trial_ensemble.h"
 #include "bio/opensim/external_loads.h"
@@ -85,10 +85,11 @@ py::object sobolOf(const std::optional<bio::SobolFinding>& sobol) {
 
 py::list lawsOf(const bio::ParameterLaws& laws) {
   py::list list;
-  for (const bio::DrawnParameter& one : laws.parameters) {
-    list.append(results("name"_a = one.name, "unit"_a = one.unit, "value"_a = one.value,
-                        "mean"_a = one.law.mean, "sd"_a = one.law.sd,
-                        "lower"_a = one.law.quantile(0), "upper"_a = one.law.quantile(1)));
+  for (const bio::DrawnParameter& parameter : laws.parameters) {
+    list.append(results("name"_a = parameter.name, "unit"_a = parameter.unit,
+                        "value"_a = parameter.value, "mean"_a = parameter.law.mean,
+                        "sd"_a = parameter.law.sd, "lower"_a = parameter.law.quantile(0),
+                        "upper"_a = parameter.law.quantile(1)));
   }
   return list;
 }
@@ -144,7 +145,7 @@ py::object ensemble(const bio::Model& model, const bio::Trial& trial,
                     const std::map<std::string, double>& initial, const Names& coordinate,
                     const std::map<std::string, double>& lock, const std::string& integrator,
                     std::optional<double> step) {
-  const SystemChoice choice = armChoice(model, {trial}, coordinate, lock, integrator, step);
+  const SystemChoice choice = systemChoice(model, {trial}, coordinate, lock, integrator, step);
   if (choice.coordinates.empty()) {
     throw std::invalid_argument("no coordinate is free to be observed: all are prescribed");
   }
@@ -171,9 +172,9 @@ py::object ensemble(const bio::Model& model, const bio::Trial& trial,
   EnsembleRows rows;
   std::optional<bio::SobolFinding> indices;
   interruptible([&](const std::atomic<bool>& goOn) {
-    const bio::MusculoskeletalSystem system(model, choice.armOptions());
+    const bio::MusculoskeletalSystem system(model, choice.systemOptions());
     made = std::make_unique<const bio::TrialEnsemble>(
-        model, system, choice.armOptions(), trial,
+        model, system, choice.systemOptions(), trial,
         bio::beginningOf(trial, model, system, initial).point, options);
     rows = rowsOf(*made, first, seed, threads, goOn);
     if (!sobol || !goOn) return;

@@ -45,14 +45,14 @@ std::vector<info::Parameter> parametersOf(const VectorXd& start,
                                           const Pairs& bounds, const Pairs& prior) {
   std::vector<info::Parameter> parameters;
   for (Eigen::Index i = 0; i < start.size(); ++i) {
-    info::Parameter one{.name = names[static_cast<std::size_t>(i)], .start = start[i]};
-    if (const auto found = bounds.find(one.name); found != bounds.end()) {
-      std::tie(one.lower, one.upper) = found->second;
+    info::Parameter parameter{.name = names[static_cast<std::size_t>(i)], .start = start[i]};
+    if (const auto found = bounds.find(parameter.name); found != bounds.end()) {
+      std::tie(parameter.lower, parameter.upper) = found->second;
     }
-    if (const auto found = prior.find(one.name); found != prior.end()) {
-      one.prior = info::GaussianPrior{found->second.first, found->second.second};
+    if (const auto found = prior.find(parameter.name); found != prior.end()) {
+      parameter.prior = info::GaussianPrior{found->second.first, found->second.second};
     }
-    parameters.push_back(std::move(one));
+    parameters.push_back(std::move(parameter));
   }
   for (const auto* named : {&bounds, &prior}) {
     for (const auto& [name, values] : *named) {

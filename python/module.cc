@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "arms.h"
+#include "systems.h"
 #include "bio/tables/file_error.h"
 #include "info/version.h"
 #include "python_system.h"

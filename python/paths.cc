@@ -4,7 +4,7 @@
 
 #include "arguments/columns.h"
 #include "arguments/file_name.h"
-#include "arms.h"
+#include "systems.h"
 #include "bio/analysis/fit_paths.h"
 #include "docstrings.h"
 #include "interruptible.h"
@@ -57,16 +57,16 @@ py::object momentArms(const bio::Model& model, const py::object& postures,
                  "touched"_a = touched, "notes"_a = paths.notes, "warnings"_a = paths.warnings);
 }
 
-py::object fitOf(const bio::MuscleFit& one) {
+py::object fitOf(const bio::MuscleFit& fit) {
   std::vector<std::string> coordinates;
   py::object order = py::none(), error = py::none(), armError = py::none();
-  if (one.fit) {
-    coordinates = one.fit->function.coordinates;
-    order = py::cast(std::get<bio::MultivariatePolynomial>(one.fit->function.length).order);
-    error = py::cast(one.fit->length.largest);
-    armError = py::cast(one.fit->arm.largest);
+  if (fit.fit) {
+    coordinates = fit.fit->function.coordinates;
+    order = py::cast(std::get<bio::MultivariatePolynomial>(fit.fit->function.length).order);
+    error = py::cast(fit.fit->length.largest);
+    armError = py::cast(fit.fit->system.largest);
   }
-  return results("written"_a = one.whyNot.empty(), "why_not"_a = one.whyNot,
+  return results("written"_a = fit.whyNot.empty(), "why_not"_a = fit.whyNot,
                  "coordinates"_a = coordinates, "order"_a = order, "length_error"_a = error,
                  "moment_arm_error"_a = armError);
 }
@@ -87,9 +87,9 @@ py::object fitPaths(const bio::Model& model, const std::vector<std::string>& mus
     choice.coordinates = lengths->postures.coordinates;
     choice.locks = lock;
   } else {
-    choice = armChoice(model, {}, coordinate, lock, "vi", {});
+    choice = systemChoice(model, {}, coordinate, lock, "vi", {});
   }
-  const bio::SkeletonOptions skeleton = choice.armOptions().skeleton;
+  const bio::SkeletonOptions skeleton = choice.systemOptions().skeleton;
   const bio::PathFitOptions options{tolerance, order};
   std::vector<bio::MuscleFit> fits;
   interruptible([&](const std::atomic<bool>&) {
@@ -102,7 +102,7 @@ py::object fitPaths(const bio::Model& model, const std::vector<std::string>& mus
                     choice.coordinates.empty() ? std::string() : choice.coordinates[0]));
   }
   py::dict all;
-  for (const bio::MuscleFit& one : fits) all[one.muscle.c_str()] = fitOf(one);
+  for (const bio::MuscleFit& fit : fits) all[fit.muscle.c_str()] = fitOf(fit);
   return results("model"_a = bio::withFittedPaths(model, fits), "fits"_a = all);
 }
 

@@ -1,7 +1,7 @@
 #include "bio/review/model_review.h"
 
 #include "arguments/file_name.h"
-#include "arms.h"
+#include "systems.h"
 #include "bio/analysis/muscle_states.h"
 #include "bio/analysis/opensim_paths.h"
 #include "bio/path/length_jumps.h"
@@ -26,9 +26,9 @@ const char* nameOf(bio::Weight weight) {
 
 py::list listOf(const std::vector<bio::Remark>& remarks) {
   py::list list;
-  for (const bio::Remark& one : remarks) {
-    list.append(results("weight"_a = nameOf(one.weight), "subject"_a = one.subject,
-                        "message"_a = one.message));
+  for (const bio::Remark& remark : remarks) {
+    list.append(results("weight"_a = nameOf(remark.weight), "subject"_a = remark.subject,
+                        "message"_a = remark.message));
   }
   return list;
 }
@@ -37,10 +37,11 @@ py::list lengthJumps(const bio::Model& model) {
   std::vector<bio::LengthJump> jumps;
   interruptible([&](const std::atomic<bool>&) { jumps = bio::lengthJumps(model); });
   py::list list;
-  for (const bio::LengthJump& one : jumps) {
-    list.append(results("muscle"_a = one.muscle, "coordinate"_a = one.coordinate,
-                        "value"_a = one.value, "length"_a = one.size, "moment_arm"_a = one.arm,
-                        "conditional"_a = one.conditional, "text"_a = bio::describe(one)));
+  for (const bio::LengthJump& jump : jumps) {
+    list.append(results("muscle"_a = jump.muscle, "coordinate"_a = jump.coordinate,
+                        "value"_a = jump.value, "length"_a = jump.size,
+                        "moment_arm"_a = jump.system, "conditional"_a = jump.conditional,
+                        "text"_a = bio::describe(jump)));
   }
   return list;
 }
@@ -49,15 +50,15 @@ py::list openSimDifferences(const bio::Model& model) {
   std::vector<bio::OpenSimDifference> differences;
   interruptible([&](const std::atomic<bool>&) { differences = bio::openSimDifferences(model); });
   py::list list;
-  for (const bio::OpenSimDifference& one : differences) {
+  for (const bio::OpenSimDifference& difference : differences) {
     std::vector<std::pair<double, double>> apart, jumps;
-    for (const auto& range : one.apart) apart.emplace_back(range.from, range.to);
-    for (const auto& jump : one.jumps) jumps.emplace_back(jump.at, jump.size);
-    list.append(results("muscle"_a = one.muscle, "coordinate"_a = one.coordinate,
-                        "ellipsoids"_a = one.ellipsoids, "length"_a = one.length,
-                        "length_at"_a = one.lengthAt, "moment_arm"_a = one.arm,
-                        "moment_arm_at"_a = one.armAt, "apart"_a = apart, "jumps"_a = jumps,
-                        "text"_a = bio::describe(one)));
+    for (const auto& range : difference.apart) apart.emplace_back(range.from, range.to);
+    for (const auto& jump : difference.jumps) jumps.emplace_back(jump.at, jump.size);
+    list.append(results("muscle"_a = difference.muscle, "coordinate"_a = difference.coordinate,
+                        "ellipsoids"_a = difference.ellipsoids, "length"_a = difference.length,
+                        "length_at"_a = difference.lengthAt, "moment_arm"_a = difference.system,
+                        "moment_arm_at"_a = difference.systemAt, "apart"_a = apart,
+                        "jumps"_a = jumps, "text"_a = bio::describe(difference)));
   }
   return list;
 }
@@ -72,7 +73,7 @@ py::object muscleStates(const FileName& file) {
     return values;
   };
   std::vector<std::string> classes;
-  for (const bio::MuscleState& one : states) classes.push_back(one.className);
+  for (const bio::MuscleState& state : states) classes.push_back(state.className);
   return results("muscle_class"_a = classes,
                  "fibre_velocity"_a = column(&bio::MuscleState::fibreVelocity),
                  "tendon_force"_a = column(&bio::MuscleState::tendonForce),

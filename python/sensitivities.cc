@@ -5,7 +5,7 @@
 #include <numbers>
 #include <variant>
 
-#include "arms.h"
+#include "systems.h"
 #include "bio/analysis/replay.h"
 #include "bio/analysis/sensitivity_study.h"
 #include "bio/calibration/trial_set.h"
@@ -20,7 +20,7 @@ namespace {
 /// The system and the trials with which the functions below begin.
 struct Studies {
   SystemChoice choice;
-  std::unique_ptr<bio::MusculoskeletalSystem> arm = {};
+  std::unique_ptr<bio::MusculoskeletalSystem> system = {};
   std::vector<bio::StudiedTrial> trials = {};
   bio::SensitivityQuestion question = {};
 
@@ -39,7 +39,7 @@ struct Choosing {
 Studies begun(const bio::Model& model, const std::vector<bio::Trial>& trials,
               const Choosing& chosen) {
   Studies studies{
-      armChoice(model, trials, chosen.coordinate, chosen.lock, chosen.integrator, chosen.step)};
+      systemChoice(model, trials, chosen.coordinate, chosen.lock, chosen.integrator, chosen.step)};
   if (trials.empty()) throw std::invalid_argument("trials: empty, must have at least one");
   for (const bio::Trial& trial : trials) mustBeOfTheModelAsItIs(trial);
   bio::requireDifferentTrials(trials, {});
@@ -50,15 +50,15 @@ Studies begun(const bio::Model& model, const std::vector<bio::Trial>& trials,
 void prepare(Studies& studies, const bio::Model& model, const std::vector<bio::Trial>& trials,
              const Choosing& chosen, const std::atomic<bool>& goOn) {
   const SystemChoice& choice = studies.choice;
-  studies.arm = std::make_unique<bio::MusculoskeletalSystem>(model, choice.armOptions());
+  studies.system = std::make_unique<bio::MusculoskeletalSystem>(model, choice.systemOptions());
   for (const bio::Trial& trial : trials) {
     bio::SimulationOptions simulation = during(trial, choice.simulation());
     simulation.progress = [&](double) { return goOn.load(); };
     studies.trials.push_back(bio::studiedTrial(
-        trial, model, *studies.arm,
-        bio::beginningOf(trial, model, *studies.arm, chosen.initial).point, simulation));
+        trial, model, *studies.system,
+        bio::beginningOf(trial, model, *studies.system, chosen.initial).point, simulation));
   }
-  studies.question.system = choice.armOptions();
+  studies.question.system = choice.systemOptions();
   if (!choice.coordinates.empty()) studies.question.coordinate = choice.coordinates.front();
 }
 
@@ -70,11 +70,11 @@ void mustHaveFreeCoordinate(const Studies& studies, const char* otherwise) {
 
 py::list gainsOf(const std::vector<bio::ChannelGain>& gains, const bio::Model& model) {
   py::list list;
-  for (const bio::ChannelGain& one : gains) {
-    list.append(results("channel"_a = bio::nameOf(one.channel.what), "noise"_a = one.channel.sd,
-                        "unit"_a = bio::unitOf(one.channel.what, model),
-                        "information"_a = one.information, "parameter"_a = one.parameter,
-                        "bound_before"_a = one.before, "bound_after"_a = one.after));
+  for (const bio::ChannelGain& gain : gains) {
+    list.append(results("channel"_a = bio::nameOf(gain.channel.what), "noise"_a = gain.channel.sd,
+                        "unit"_a = bio::unitOf(gain.channel.what, model),
+                        "information"_a = gain.information, "parameter"_a = gain.parameter,
+                        "bound_before"_a = gain.before, "bound_after"_a = gain.after));
   }
   return list;
 }
@@ -95,20 +95,20 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
     bio::SensitivityQuestion& question = studies.question;
     question.noise = noise;
     question.observed =
-        bio::observedChannels({observe.begin(), observe.end()}, model, *studies.arm);
+        bio::observedChannels({observe.begin(), observe.end()}, model, *studies.system);
     question.selection = studies.catalogue().select(parameters);
     found = bio::localSensitivity(studies.trials, question);
     if (furtherChannels) {
-      gains = bio::furtherGains(studies.trials, *studies.arm, question, found.information);
+      gains = bio::furtherGains(studies.trials, *studies.system, question, found.information);
     }
   });
   const bio::ParameterInformation& known = found.information;
   std::vector<std::string> names, units, observed;
   Eigen::VectorXd priorSd(std::ssize(known.parameters));
-  for (const info::Parameter& one : known.parameters) {
-    priorSd[std::ssize(names)] = one.prior->sd;
-    names.push_back(one.name);
-    units.push_back(one.unit);
+  for (const info::Parameter& parameter : known.parameters) {
+    priorSd[std::ssize(names)] = parameter.prior->sd;
+    names.push_back(parameter.name);
+    units.push_back(parameter.unit);
   }
   for (const auto& one : studies.question.observed) observed.push_back(bio::nameOf(one.what));
   if (observed.empty()) observed.push_back(studies.question.coordinate);
@@ -148,11 +148,11 @@ py::object parameterSweep(const bio::Model& model, const bio::Trial& trial,
   std::vector<Eigen::VectorXd> motions;
   std::vector<std::string> outcomes;
   Eigen::VectorXd rms(std::ssize(found->runs)), largest(std::ssize(found->runs));
-  for (const bio::SweepRun& one : found->runs) {
-    rms[std::ssize(motions)] = one.rms;
-    largest[std::ssize(motions)] = one.largest;
-    motions.emplace_back(one.motion.q.row(0).transpose());
-    outcomes.emplace_back(bio::name(one.motion.outcome));
+  for (const bio::SweepRun& run : found->runs) {
+    rms[std::ssize(motions)] = run.rms;
+    largest[std::ssize(motions)] = run.largest;
+    motions.emplace_back(run.motion.q.row(0).transpose());
+    outcomes.emplace_back(bio::name(run.motion.outcome));
   }
   const bio::Trajectory& nominal = found->nominal;
   return results(
@@ -193,12 +193,12 @@ py::object profileLikelihood(const bio::Model& model, const std::vector<bio::Tri
   Eigen::VectorXd values(std::ssize(points)), costs(std::ssize(points));
   Eigen::MatrixXd best(std::ssize(points), std::ssize(names));
   std::vector<bool> converged;
-  for (const info::ProfilePoint& one : points) {
+  for (const info::ProfilePoint& point : points) {
     const auto k = std::ssize(converged);
-    values[k] = one.value;
-    costs[k] = one.cost;
-    best.row(k) = one.parameters.transpose();
-    converged.push_back(one.converged);
+    values[k] = point.value;
+    costs[k] = point.cost;
+    best.row(k) = point.parameters.transpose();
+    converged.push_back(point.converged);
   }
   return results("parameter"_a = found.parameter.name, "unit"_a = found.parameter.unit,
                  "values"_a = values, "costs"_a = costs, "threshold"_a = found.profile.threshold,
@@ -274,7 +274,7 @@ py::object costGradient(const bio::Model& model, const std::vector<bio::Trial>& 
                         bool priors, bool ownStart, int threads, const Names& freeCoordinates,
                         const std::map<std::string, double>& lock, const std::string& integrator,
                         std::optional<double> step) {
-  const SystemChoice choice = armChoice(model, trials, freeCoordinates, lock, integrator, step);
+  const SystemChoice choice = systemChoice(model, trials, freeCoordinates, lock, integrator, step);
   for (const bio::Trial& trial : trials) mustBeOfTheModelAsItIs(trial);
   bio::TrialSetOptions options;
   options.parameters = parameters;
@@ -286,13 +286,13 @@ py::object costGradient(const bio::Model& model, const std::vector<bio::Trial>& 
   Eigen::VectorXd at, atModel, known;
   bio::TrialSet::Cost cost;
   interruptible([&](const std::atomic<bool>&) {
-    const bio::TrialSet set(model, choice.armOptions(), trials, options);
+    const bio::TrialSet set(model, choice.systemOptions(), trials, options);
     known = set.known();
     atModel.resize(known.size());
-    for (const info::Parameter& one : set.parameters()) {
-      atModel[std::ssize(names)] = one.start;
-      names.push_back(one.name);
-      units.push_back(one.unit);
+    for (const info::Parameter& parameter : set.parameters()) {
+      atModel[std::ssize(names)] = parameter.start;
+      names.push_back(parameter.name);
+      units.push_back(parameter.unit);
     }
     at = values.value_or(atModel);
     cost = set.leastSquares(at, noiseOf(set, noise));
@@ -313,9 +313,9 @@ py::object costGradient(const bio::Model& model, const std::vector<bio::Trial>& 
 py::list listParameters(const bio::Model& model, const Names& coordinate,
                         const std::map<std::string, double>& lock, const std::string& integrator,
                         std::optional<double> step) {
-  const SystemChoice choice = armChoice(model, {}, coordinate, lock, integrator, step);
-  const bio::MusculoskeletalSystem arm(model, choice.armOptions());
-  const bio::ParameterCatalogue catalogue(model, arm, {arm.skeleton().defaultValues(), {}});
+  const SystemChoice choice = systemChoice(model, {}, coordinate, lock, integrator, step);
+  const bio::MusculoskeletalSystem system(model, choice.systemOptions());
+  const bio::ParameterCatalogue catalogue(model, system, {system.skeleton().defaultValues(), {}});
   py::list list;
   for (const bio::ModelParameter& p : catalogue.parameters()) {
     list.append(results("name"_a = p.name, "value"_a = p.value, "unit"_a = p.unit,

@@ -1,7 +1,7 @@
 #include <numbers>
 
 #include "arguments/file_name.h"
-#include "arms.h"
+#include "systems.h"
 #include "bio/skeleton/free_coordinates.h"
 #include "bio/tables/study_file.h"
 #include "docstrings.h"
@@ -11,9 +11,9 @@ namespace {
 
 py::object subjectOf(const bio::StudySubject& subject) {
   py::list recordings;
-  for (const bio::StudyRecording& one : subject.recordings) {
-    recordings.append(
-        results("file"_a = one.file, "config"_a = one.config, "held_out"_a = one.isHeldOut));
+  for (const bio::StudyRecording& recording : subject.recordings) {
+    recordings.append(results("file"_a = recording.file, "config"_a = recording.config,
+                              "held_out"_a = recording.isHeldOut));
   }
   return results("name"_a = subject.name, "model"_a = subject.model, "train"_a = subject.train,
                  "hold_out"_a = subject.heldOut, "recordings"_a = recordings);
@@ -40,10 +40,10 @@ std::map<std::string, double> heldIn(const bio::Model& model, const std::vector<
                                      const std::map<std::string, double>& lock) {
   std::set<std::string> moments;
   for (const bio::Trial& trial : trials)
-    for (const bio::MeasuredChannel& one : trial.measured)
-      if (one.what.kind == bio::Observable::Kind::moment) moments.insert(one.what.of);
+    for (const bio::MeasuredChannel& channel : trial.measured)
+      if (channel.what.kind == bio::Observable::Kind::moment) moments.insert(channel.what.of);
   const SystemChoice choice =
-      armChoice(model, trials, coordinates, lock, "vi", {}, !moments.empty());
+      systemChoice(model, trials, coordinates, lock, "vi", {}, !moments.empty());
   std::set<std::string> moving(choice.coordinates.begin(), choice.coordinates.end());
   moving.insert(choice.prescribed.begin(), choice.prescribed.end());
   std::map<std::string, double> held = bio::heldCoordinates(model, moving, lock);

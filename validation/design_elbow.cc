@@ -19,10 +19,11 @@ int main(int argc, char** argv) {
   }
   constexpr double degree = std::numbers::pi / 180;
   const bio::Model model = bio::readOsim(argv[1]);
-  const bio::SystemOptions armOptions{{{"elbow_flexion"}, {}}, {}, {}};
-  const bio::MusculoskeletalSystem arm(model, armOptions);
+  const bio::SystemOptions systemOptions{{{"elbow_flexion"}, {}}, {}, {}};
+  const bio::MusculoskeletalSystem system(model, systemOptions);
   const bio::Trial trial = bio::readTrial(argv[2], model);
-  const bio::ParameterCatalogue catalogue(model, arm, {bio::startCoordinates(trial, arm, {}), {}});
+  const bio::ParameterCatalogue catalogue(model, system,
+                                          {bio::startCoordinates(trial, system, {}), {}});
   bio::SimulationOptions simulation;
   simulation.startTime = trial.times[0];
   simulation.duration = trial.times[trial.times.size() - 1] - trial.times[0];
@@ -33,7 +34,7 @@ int main(int argc, char** argv) {
   question.parameters = {catalogue.find("TRI.radius")};
   bio::DesignLimits limits;
   limits.coordinates = {{"elbow_flexion", 0, 130 * degree}};
-  const bio::ExperimentDesign design(arm, catalogue, catalogue.nominal(), trial, simulation,
+  const bio::ExperimentDesign design(system, catalogue, catalogue.nominal(), trial, simulation,
                                      question, limits, {}, 0.3);
   bio::DesignSearchSettings settings;
   settings.generations = 80;
@@ -48,9 +49,9 @@ int main(int argc, char** argv) {
              design.inputs().largestTorqueRate(result.after.trial, "elbow_flexion"));
 
   // The estimator's experiment is built anew from what the design says.
-  simulation.externalForce = bio::externalForceOf(result.after.trial, arm);
+  simulation.externalForce = bio::externalForceOf(result.after.trial, system);
   const bio::TrialPredictor experiment(
-      catalogue, armOptions, bio::excitationOf(result.after.trial, arm), "elbow_flexion",
+      catalogue, systemOptions, bio::excitationOf(result.after.trial, system), "elbow_flexion",
       {result.after.measuredTimes.begin(), result.after.measuredTimes.end()}, question.parameters,
       simulation);
   info::MonteCarloOptions options;

@@ -67,11 +67,11 @@ bio::MusculoskeletalSystem elbowOf(const bio::Model& model) {
   return bio::MusculoskeletalSystem(model, options);
 }
 
-bio::ExcitationSignal signalFor(const bio::MusculoskeletalSystem& arm, const bio::Table& table) {
-  Eigen::MatrixXd values(table.values.rows(), static_cast<Eigen::Index>(arm.numMuscles()));
-  for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
+bio::ExcitationSignal signalFor(const bio::MusculoskeletalSystem& system, const bio::Table& table) {
+  Eigen::MatrixXd values(table.values.rows(), static_cast<Eigen::Index>(system.numMuscles()));
+  for (std::size_t i = 0; i < system.numMuscles(); ++i) {
     values.col(static_cast<Eigen::Index>(i)) =
-        table.values.col(bio::columnIndex(table, arm.muscles()[i].name));
+        table.values.col(bio::columnIndex(table, system.muscles()[i].name));
   }
   const Eigen::VectorXd times = table.values.col(0);
   return {{times.begin(), times.end()}, values};
@@ -79,15 +79,15 @@ bio::ExcitationSignal signalFor(const bio::MusculoskeletalSystem& arm, const bio
 
 // Elbow flexion [deg] at goniometerRate, without noise.
 Eigen::VectorXd motionOf(const bio::Model& model, const bio::Table& excitations, double start_deg) {
-  const bio::MusculoskeletalSystem arm = elbowOf(model);
-  const bio::ExcitationSignal signal = signalFor(arm, excitations);
+  const bio::MusculoskeletalSystem system = elbowOf(model);
+  const bio::ExcitationSignal signal = signalFor(system, excitations);
   bio::SimulationOptions options;
   options.integrator = bio::Integrator::cvode;
   options.duration = duration;
   options.step = 1 / goniometerRate;
   const bio::SystemState start =
-      bio::initialState(arm, Eigen::VectorXd::Constant(1, start_deg * degree), signal, 0);
-  const bio::Trajectory motion = bio::simulate(arm, signal, start, options);
+      bio::initialState(system, Eigen::VectorXd::Constant(1, start_deg * degree), signal, 0);
+  const bio::Trajectory motion = bio::simulate(system, signal, start, options);
   if (motion.outcome != bio::Outcome::completed) throw std::runtime_error(motion.why);
   return motion.q.row(0).transpose() / degree;
 }

@@ -89,9 +89,9 @@ void answer(const Question& question, bio::Model model, const std::vector<bio::T
   options.prior = question.prior;
   options.bounds = question.bounds;
   options.starts = 6;
-  const bio::SystemOptions arm{{{"elbow_flexion"}, {}}, {}, {}};
-  const bio::TrialSet odd(model, arm, training, options.trials);
-  const bio::TrialSet even(model, arm, heldOut, options.trials);
+  const bio::SystemOptions system{{{"elbow_flexion"}, {}}, {}, {}};
+  const bio::TrialSet odd(model, system, training, options.trials);
+  const bio::TrialSet even(model, system, heldOut, options.trials);
   const bio::Calibration found = bio::calibrate(odd, &even, options);
   fmt::print("\n{}\n", question.title);
   if (!found.failure.empty()) {

@@ -134,9 +134,9 @@ class Calibrate : public Command {
     for (const std::string& warning : model.warnings) summary.warn(warning);
     convertMuscles(muscleClass_, model, summary);
     chooseCoordinates(simulation_, model, trials_);
-    const bio::TrialSet training(model, armOptions(simulation_), read(trials_, model, summary),
+    const bio::TrialSet training(model, systemOptions(simulation_), read(trials_, model, summary),
                                  typed.trials);
-    for (const std::string& warning : training.arm().warnings()) summary.warn(warning);
+    for (const std::string& warning : training.system().warnings()) summary.warn(warning);
     boundsMustBePossible(training, typed);
     const std::vector<bio::Trial> heldOut = read(heldOut_, model, summary);
     tellNotFitted(training, heldOut, summary);
@@ -151,7 +151,7 @@ class Calibrate : public Command {
         return true;
       };
       found = bio::calibrateAtShorterSteps(
-          model, armOptions(simulation_), training.trials(), heldOut, options,
+          model, systemOptions(simulation_), training.trials(), heldOut, options,
           simulation_.step ? infinity : bio::shortestCalibrationStep);
     }
     summary.setSimulation(
@@ -162,7 +162,7 @@ class Calibrate : public Command {
     const bio::Calibration& calibration = found.calibration;
     if (calibration.calibrated) {
       calibrated =
-          bio::calibratedModel(*found.training, found.heldOut.get(), armOptions(simulation_),
+          bio::calibratedModel(*found.training, found.heldOut.get(), systemOptions(simulation_),
                                found.options.trials.simulation, calibration);
     }
     const CalibrateFindings findings{
@@ -217,11 +217,11 @@ class Calibrate : public Command {
     for (const NamedPair& bounds : parsePairs(bounds_, "--bounds")) {
       options.bounds[bounds.name] = {bounds.first, bounds.second};
     }
-    if (noise_) options.noise = *noise_ / radian;
+    if (noise_) options.noise = *noise_ / degreesPerRadian;
     for (const std::string& text : channelNoise_) {
-      const Assignment one = parseAssignment(text);
-      if (!options.channelNoise.emplace(one.name, one.value).second) {
-        throw std::invalid_argument(fmt::format("--noise: '{}' is given twice", one.name));
+      const Assignment assignment = parseAssignment(text);
+      if (!options.channelNoise.emplace(assignment.name, assignment.value).second) {
+        throw std::invalid_argument(fmt::format("--noise: '{}' is given twice", assignment.name));
       }
     }
     options.loss.kind = loss_ == "huber"     ? info::RobustLoss::Kind::huber
@@ -235,23 +235,23 @@ class Calibrate : public Command {
   }
 
   /// Whether a parameter is positive by its nature, as a muscle's number, a mass or a radius is.
-  static bool cannotBeNegative(const bio::ModelParameter& one) {
-    return one.lower >= 0 &&
-           (std::holds_alternative<bio::MuscleTarget>(one.targets.front()) ||
-            std::holds_alternative<bio::MuscleNumberTarget>(one.targets.front()) ||
-            std::holds_alternative<bio::ForceNumberTarget>(one.targets.front()) ||
-            one.unit == "kg" || one.name.ends_with(".radius"));
+  static bool cannotBeNegative(const bio::ModelParameter& parameter) {
+    return parameter.lower >= 0 &&
+           (std::holds_alternative<bio::MuscleTarget>(parameter.targets.front()) ||
+            std::holds_alternative<bio::MuscleNumberTarget>(parameter.targets.front()) ||
+            std::holds_alternative<bio::ForceNumberTarget>(parameter.targets.front()) ||
+            parameter.unit == "kg" || parameter.name.ends_with(".radius"));
   }
 
   static void boundsMustBePossible(const bio::TrialSet& training,
                                    const bio::CalibrationOptions& options) {
     for (const auto& [name, bounds] : options.bounds) {
       if (bio::namesKnot(name)) continue;  // refused with the reason
-      const bio::ModelParameter& one =
+      const bio::ModelParameter& parameter =
           training.catalogue().parameters()[training.catalogue().find(name)];
-      if (bounds.first >= 0 || !cannotBeNegative(one)) continue;
+      if (bounds.first >= 0 || !cannotBeNegative(parameter)) continue;
       throw std::invalid_argument(fmt::format("--bounds: lower bound of {} = {} {}, must be ≥ 0",
-                                              one.name, bounds.first, one.unit));
+                                              parameter.name, bounds.first, parameter.unit));
     }
   }
 
@@ -263,8 +263,8 @@ class Calibrate : public Command {
       for (const std::string& warning : trials.back().warnings) summary.warn(warning);
       if (!latent_.empty()) {
         trials.back().latent.clear();
-        for (const NamedPair& one : parsePairs(latent_, "--latent")) {
-          trials.back().latent.push_back({one.name, one.first, one.second});
+        for (const NamedPair& pair : parsePairs(latent_, "--latent")) {
+          trials.back().latent.push_back({pair.name, pair.first, pair.second});
         }
       }
       for (const bio::MeasuredChannel& motion : trials.back().measured) {
@@ -286,8 +286,8 @@ class Calibrate : public Command {
       text += fmt::format("; {} {} SHA-256 {}", what, summary.inputs()[i].path,
                           summary.inputs()[i].sha256);
     }
-    for (const bio::CalibratedParameter& one : f.calibration.parameters) {
-      if (!one.ofTrial) text += "; " + estimateWords(one);
+    for (const bio::CalibratedParameter& parameter : f.calibration.parameters) {
+      if (!parameter.ofTrial) text += "; " + estimateWords(parameter);
     }
     model.credits += model.credits.empty() ? text : ". " + text;
     folder.writeFile("calibrated.osim", [&](const std::filesystem::path& path) {
@@ -305,11 +305,12 @@ class Calibrate : public Command {
     std::vector<Eigen::Index> kept;
     std::vector<double> sds;
     for (std::size_t i = 0; i < calibration.parameters.size(); ++i) {
-      const bio::CalibratedParameter& one = calibration.parameters[i];
-      if (one.ofTrial || one.asked.name.starts_with("emg.") || !(one.sd > 0)) continue;
-      covariance.names.push_back(one.asked.name);
+      const bio::CalibratedParameter& parameter = calibration.parameters[i];
+      if (parameter.ofTrial || parameter.asked.name.starts_with("emg.") || !(parameter.sd > 0))
+        continue;
+      covariance.names.push_back(parameter.asked.name);
       kept.push_back(static_cast<Eigen::Index>(i));
-      sds.push_back(one.sd);
+      sds.push_back(parameter.sd);
     }
     const Eigen::Map<const Eigen::VectorXd> d(sds.data(), static_cast<Eigen::Index>(sds.size()));
     const Eigen::MatrixXd correlation = calibration.correlation(kept, kept);
@@ -320,18 +321,18 @@ class Calibrate : public Command {
   /// Writes driven trials, and lists the files to replay.
   void writeTrials(bio::CalibratedModel& calibrated, Summary& summary, OutputFolder& folder) const {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const bio::CalibratedTrial& one : calibrated.trials) {
-      std::string file = (one.isHeldOut ? heldOut_ : trials_)[one.index];
-      nlohmann::ordered_json json{{"file", file}, {"role", one.isHeldOut ? "held_out" : "train"}};
-      if (one.driven) file = writeDriven(one, one.index + 1, calibrated.model, folder);
+    for (const bio::CalibratedTrial& trial : calibrated.trials) {
+      std::string file = (trial.isHeldOut ? heldOut_ : trials_)[trial.index];
+      nlohmann::ordered_json json{{"file", file}, {"role", trial.isHeldOut ? "held_out" : "train"}};
+      if (trial.driven) file = writeDriven(trial, trial.index + 1, calibrated.model, folder);
       json["replay_file"] = file;
-      json["rmse_after_deg"] = orNull(one.after * radian);
-      for (const bio::ChannelError& channel : one.channels) {
+      json["rmse_after_deg"] = orNull(trial.after * degreesPerRadian);
+      for (const bio::ChannelError& channel : trial.channels) {
         json["rms_error"][nameOf(channel.what)] = {
             {"value", channel.error.rms}, {"unit", bio::unitOf(channel.what, calibrated.model)}};
       }
       json["start"] = nlohmann::ordered_json::array();
-      for (const bio::TrialStart& start : one.starts) {
+      for (const bio::TrialStart& start : trial.starts) {
         json["start"].push_back(
             {{"coordinate", start.coordinate}, {"value", start.value}, {"speed", start.speed}});
       }

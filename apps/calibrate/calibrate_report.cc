@@ -22,7 +22,7 @@ struct ShownUnit {
   std::string name;
 };
 ShownUnit shownUnit(const bio::MeasuredGroup& channel) {
-  if (channel.areAngles) return {radian, "deg"};
+  if (channel.areAngles) return {degreesPerRadian, "deg"};
   return {1, unitText(channel.unit)};
 }
 
@@ -141,28 +141,30 @@ Table estimateTable(const CalibrateFindings& f) {
   table.columns[5] = fmt::format("{:g} % interval", f.options.confidence * 100);
   if (!f.options.profile.empty()) table.columns.push_back("profile interval");
   if (bootstrapped) table.columns.push_back("bootstrap interval");
-  for (const bio::CalibratedParameter& one : f.calibration.parameters) {
-    if (isKnot(one)) continue;
-    const auto& prior = one.asked.prior;
+  for (const bio::CalibratedParameter& parameter : f.calibration.parameters) {
+    if (isKnot(parameter)) continue;
+    const auto& prior = parameter.asked.prior;
     std::vector<std::string> row = {
-        one.asked.name,
-        one.asked.unit,
-        numberText(one.model),
-        numberText(one.value),
-        numberText(one.sd, 3),
-        intervalText(one.lower, one.upper),
+        parameter.asked.name,
+        parameter.asked.unit,
+        numberText(parameter.model),
+        numberText(parameter.value),
+        numberText(parameter.sd, 3),
+        intervalText(parameter.lower, parameter.upper),
         prior ? fmt::format("{} ± {}", numberText(prior->mean), numberText(prior->sd, 3))
-              : intervalText(one.asked.lower, one.asked.upper),
-        std::isinf(one.determinacy.bound) ? "± ∞" : "± " + numberText(one.determinacy.bound, 3),
-        one.identifiable ? "yes"
-        : one.atBound    ? "at its bound"
-                         : "no"};
+              : intervalText(parameter.asked.lower, parameter.asked.upper),
+        std::isinf(parameter.determinacy.bound) ? "± ∞"
+                                                : "± " + numberText(parameter.determinacy.bound, 3),
+        parameter.identifiable ? "yes"
+        : parameter.atBound    ? "at its bound"
+                               : "no"};
     if (!f.options.profile.empty()) {
-      row.push_back(one.profile && one.identifiable
-                        ? intervalText(one.profile->lower, one.profile->upper)
+      row.push_back(parameter.profile && parameter.identifiable
+                        ? intervalText(parameter.profile->lower, parameter.profile->upper)
                         : "–");
     }
-    if (bootstrapped) row.push_back(intervalText(one.bootstrapLower, one.bootstrapUpper));
+    if (bootstrapped)
+      row.push_back(intervalText(parameter.bootstrapLower, parameter.bootstrapUpper));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -172,15 +174,16 @@ Table estimateTable(const CalibrateFindings& f) {
 VectorDrawing intervals(const CalibrateFindings& f) {
   const double z = info::normalQuantile(f.options.confidence);
   std::vector<IntervalRow> rows;
-  for (const bio::CalibratedParameter& one : f.calibration.parameters) {
-    if (isKnot(one)) continue;
-    const auto scaled = [&](double value) { return (value - one.model) / one.known; };
-    IntervalRow row{.name = one.asked.name, .estimate = scaled(one.value)};
-    if (const auto& prior = one.asked.prior) {
+  for (const bio::CalibratedParameter& parameter : f.calibration.parameters) {
+    if (isKnot(parameter)) continue;
+    const auto scaled = [&](double value) { return (value - parameter.model) / parameter.known; };
+    IntervalRow row{.name = parameter.asked.name, .estimate = scaled(parameter.value)};
+    if (const auto& prior = parameter.asked.prior) {
       row.before =
           std::pair(scaled(prior->mean - z * prior->sd), scaled(prior->mean + z * prior->sd));
     }
-    if (!std::isnan(one.lower)) row.interval = std::pair(scaled(one.lower), scaled(one.upper));
+    if (!std::isnan(parameter.lower))
+      row.interval = std::pair(scaled(parameter.lower), scaled(parameter.upper));
     rows.push_back(std::move(row));
   }
   return {"Estimates and priors",
@@ -190,10 +193,10 @@ VectorDrawing intervals(const CalibrateFindings& f) {
                       f.options.confidence * 100)};
 }
 
-Figure profileFigure(const bio::CalibratedParameter& one) {
-  const info::Profile& profile = one.profile->profile;
-  Figure figure{.title = fmt::format("Profile likelihood of {}", one.asked.name),
-                .xLabel = info::label(one.asked),
+Figure profileFigure(const bio::CalibratedParameter& parameter) {
+  const info::Profile& profile = parameter.profile->profile;
+  Figure figure{.title = fmt::format("Profile likelihood of {}", parameter.asked.name),
+                .xLabel = info::label(parameter.asked),
                 .yLabel = "Negative log posterior [nats]",
                 .caption =
                     "The smallest cost with the parameter fixed and all others re-estimated. "
@@ -215,7 +218,7 @@ std::string aboveNoise(const CalibrateFindings& f) {
   return fmt::format(
       " Neighbouring samples scatter by only {:.3g} deg: these parameters do not explain the rest "
       "of the residual. Another parameter may, or an effect that the model lacks.",
-      f.calibration.noiseFloor * radian);
+      f.calibration.noiseFloor * degreesPerRadian);
 }
 
 /// One sentence for each channel where not only angles were measured.
@@ -242,7 +245,7 @@ std::string noiseText(const CalibrateFindings& f) {
   const bio::ResidualNoise& noise = f.calibration.noise;
   if (f.options.noise) {
     return fmt::format("White noise of {:.3g} deg was given; the reduced χ² is {:.3g}.{}",
-                       noise.sd * radian, f.calibration.reducedChiSquare,
+                       noise.sd * degreesPerRadian, f.calibration.reducedChiSquare,
                        f.calibration.reducedChiSquare > 1.5
                            ? " The residuals are larger than this noise: the model does not fit "
                              "the data to within the noise, and the intervals are too narrow."
@@ -252,7 +255,7 @@ std::string noiseText(const CalibrateFindings& f) {
     return fmt::format(
                "The residuals are white with a standard deviation of {:.3g} deg, which was taken "
                "as the noise.",
-               noise.sd * radian) +
+               noise.sd * degreesPerRadian) +
            aboveNoise(f);
   }
   return fmt::format(
@@ -260,8 +263,8 @@ std::string noiseText(const CalibrateFindings& f) {
              "samples ({:.2g} s) count as one independent value, so the intervals are {:.2g} times "
              "wider than for white noise. Part of the residual is error of the model; the bias "
              "that it causes in the estimates is not covered by the intervals.",
-             noise.sd * radian, noise.correlationTime, noise.correlationTime * interval(f.training),
-             std::sqrt(noise.correlationTime)) +
+             noise.sd * degreesPerRadian, noise.correlationTime,
+             noise.correlationTime * interval(f.training), std::sqrt(noise.correlationTime)) +
          aboveNoise(f);
 }
 
@@ -301,9 +304,9 @@ std::string verdictOf(const CalibrateFindings& f) {
   const bio::Calibration& c = f.calibration;
   if (!c.failure.empty()) return fmt::format("No estimate: {}.", c.failure);
   std::ptrdiff_t all = 0, identifiable = 0;
-  for (const auto& one : c.parameters) {
-    all += !one.ofTrial;
-    identifiable += !one.ofTrial && one.identifiable;
+  for (const auto& parameter : c.parameters) {
+    all += !parameter.ofTrial;
+    identifiable += !parameter.ofTrial && parameter.identifiable;
   }
   const Change training = changeOf(f, false), other = changeOf(f, true);
   std::string text = "RMS error " + training.of +
@@ -337,14 +340,15 @@ Report calibrateReport(const CalibrateFindings& f) {
   report.mainFigure = overlay(f.training, 0, c.before, c.after, "calibration");
   report.details.push_back(Section{"Estimates"});
   report.details.push_back(estimateTable(f));
-  for (const bio::CalibratedParameter& one : c.parameters) {
-    if (!one.why.empty() && !isKnot(one)) report.details.push_back(Paragraph{one.why + "."});
+  for (const bio::CalibratedParameter& parameter : c.parameters) {
+    if (!parameter.why.empty() && !isKnot(parameter))
+      report.details.push_back(Paragraph{parameter.why + "."});
   }
   report.details.emplace_back(intervals(f));
   addLatent(f, report);
   if (c.parameters.size() > 1) report.details.push_back(correlationTable(f));
-  for (const bio::CalibratedParameter& one : c.parameters) {
-    if (one.profile) report.details.push_back(profileFigure(one));
+  for (const bio::CalibratedParameter& parameter : c.parameters) {
+    if (parameter.profile) report.details.push_back(profileFigure(parameter));
   }
   if (f.heldOut) {
     report.details.push_back(Section{"Held-out trials"});

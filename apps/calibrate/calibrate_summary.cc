@@ -12,39 +12,39 @@
 namespace app {
 
 double rmse(const bio::TrialSet& set, const Eigen::MatrixXd& predicted) {
-  return std::sqrt(set.meanSquare(predicted)) * radian;
+  return std::sqrt(set.meanSquare(predicted)) * degreesPerRadian;
 }
 
 double rmseAfter(const CalibrateFindings& f, bool heldOut) {
-  return f.calibrated->rms(heldOut) * radian;
+  return f.calibrated->rms(heldOut) * degreesPerRadian;
 }
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json estimateJson(const CalibrateFindings& f, const bio::CalibratedParameter& one) {
-  Json json = {{"value", one.value},
-               {"sd", orNull(one.sd)},
-               {"unit", one.asked.unit},
-               {"identifiable", one.identifiable},
-               {"model", one.model},
-               {"interval", Json::array({orNull(one.lower), orNull(one.upper)})},
-               {"sd_data_alone", orNull(one.determinacy.bound)},
-               {"at_bound", one.atBound}};
-  if (one.asked.prior) {
-    json["prior"] = {{"mean", one.asked.prior->mean}, {"sd", one.asked.prior->sd}};
+Json estimateJson(const CalibrateFindings& f, const bio::CalibratedParameter& parameter) {
+  Json json = {{"value", parameter.value},
+               {"sd", orNull(parameter.sd)},
+               {"unit", parameter.asked.unit},
+               {"identifiable", parameter.identifiable},
+               {"model", parameter.model},
+               {"interval", Json::array({orNull(parameter.lower), orNull(parameter.upper)})},
+               {"sd_data_alone", orNull(parameter.determinacy.bound)},
+               {"at_bound", parameter.atBound}};
+  if (parameter.asked.prior) {
+    json["prior"] = {{"mean", parameter.asked.prior->mean}, {"sd", parameter.asked.prior->sd}};
   }
-  if (one.byLikelihood) json["interval_is"] = "profile likelihood";
-  if (!one.why.empty()) json["why"] = one.why;
-  if (one.profile && one.identifiable) {
+  if (parameter.byLikelihood) json["interval_is"] = "profile likelihood";
+  if (!parameter.why.empty()) json["why"] = parameter.why;
+  if (parameter.profile && parameter.identifiable) {
     json["profile_interval"] =
-        Json::array({orNull(one.profile->lower), orNull(one.profile->upper)});
+        Json::array({orNull(parameter.profile->lower), orNull(parameter.profile->upper)});
   }
   if (f.options.bootstrap > 0) {
-    json["bootstrap_sd"] = orNull(one.bootstrapSd);
+    json["bootstrap_sd"] = orNull(parameter.bootstrapSd);
     json["bootstrap_interval"] =
-        Json::array({orNull(one.bootstrapLower), orNull(one.bootstrapUpper)});
+        Json::array({orNull(parameter.bootstrapLower), orNull(parameter.bootstrapUpper)});
   }
   return json;
 }
@@ -55,7 +55,7 @@ Json channelsJson(const CalibrateFindings& f) {
   Json channels = Json::object();
   for (std::size_t i = 0; i < f.training.channels().size(); ++i) {
     const bio::MeasuredGroup& channel = f.training.channels()[i];
-    const double unit = channel.areAngles ? radian : 1;
+    const double unit = channel.areAngles ? degreesPerRadian : 1;
     const auto rms = [&](const bio::TrialSet& set, const Eigen::MatrixXd& predicted) {
       for (std::size_t k = 0; k < set.channels().size(); ++k) {
         if (set.channels()[k].name != channel.name) continue;
@@ -94,24 +94,26 @@ Json correlationJson(const bio::Calibration& c) {
 /// Other minima that fit nearly as well: a warning each, and their values.
 Json otherMinima(const bio::Calibration& c, Summary& summary) {
   Json list = Json::array();
-  for (const bio::OtherMinimum& one : c.otherMinima) {
+  for (const bio::OtherMinimum& minimum : c.otherMinima) {
     Json values = Json::object();
     std::string words;
     for (std::size_t i = 0; i < c.parameters.size(); ++i) {
       const bio::CalibratedParameter& parameter = c.parameters[i];
       if (parameter.ofTrial) continue;
-      const double value = one.values[static_cast<Eigen::Index>(i)];
+      const double value = minimum.values[static_cast<Eigen::Index>(i)];
       values[parameter.asked.name] = value;
-      const double sd = one.sd[static_cast<Eigen::Index>(i)];
+      const double sd = minimum.sd[static_cast<Eigen::Index>(i)];
       if (std::abs(value - parameter.value) < 3 * (sd > 0 ? sd : parameter.known)) continue;
       words +=
           fmt::format("{}{} = {} instead of {}", words.empty() ? "" : ", ", parameter.asked.name,
                       numberText(value, 4), withUnit(parameter.value, parameter.asked.unit, 4));
     }
-    list.push_back({{"nats", one.difference}, {"nats_of_data", one.ofData}, {"values", values}});
+    list.push_back(
+        {{"nats", minimum.difference}, {"nats_of_data", minimum.ofData}, {"values", values}});
     const std::string how =
-        one.isLikely()
-            ? fmt::format("is {:.2g} % as likely as the estimate", 100 * std::exp(-one.difference))
+        minimum.isLikely()
+            ? fmt::format("is {:.2g} % as likely as the estimate",
+                          100 * std::exp(-minimum.difference))
             : std::string("fits the data about as well, and only the priors are against it");
     summary.warn(fmt::format("another minimum {}: {}; intervals enclose both", how, words));
   }
@@ -120,30 +122,31 @@ Json otherMinima(const bio::Calibration& c, Summary& summary) {
 
 }  // namespace
 
-std::string estimateWords(const bio::CalibratedParameter& one) {
-  const std::string was = fmt::format("was {}", numberText(one.model, 6));
-  if (std::isnan(one.sd) && !std::isnan(one.lower)) {
-    return fmt::format("{} = {}, or another value between {} and {} ({})", one.asked.name,
-                       withUnit(one.value, one.asked.unit, 6), numberText(one.lower, 4),
-                       withUnit(one.upper, one.asked.unit, 4), was);
+std::string estimateWords(const bio::CalibratedParameter& parameter) {
+  const std::string was = fmt::format("was {}", numberText(parameter.model, 6));
+  if (std::isnan(parameter.sd) && !std::isnan(parameter.lower)) {
+    return fmt::format("{} = {}, or another value between {} and {} ({})", parameter.asked.name,
+                       withUnit(parameter.value, parameter.asked.unit, 6),
+                       numberText(parameter.lower, 4),
+                       withUnit(parameter.upper, parameter.asked.unit, 4), was);
   }
-  if (std::isnan(one.sd)) {
-    return fmt::format("{} = {} ({}; no interval: {})", one.asked.name,
-                       withUnit(one.value, one.asked.unit, 6), was, one.why);
+  if (std::isnan(parameter.sd)) {
+    return fmt::format("{} = {} ({}; no interval: {})", parameter.asked.name,
+                       withUnit(parameter.value, parameter.asked.unit, 6), was, parameter.why);
   }
-  return fmt::format("{} = {} ± {} ({})", one.asked.name, numberText(one.value, 6),
-                     withUnit(one.sd, one.asked.unit, 3), was);
+  return fmt::format("{} = {} ± {} ({})", parameter.asked.name, numberText(parameter.value, 6),
+                     withUnit(parameter.sd, parameter.asked.unit, 3), was);
 }
 
 std::vector<info::discover::FittedNumber> fittedNumbers(const bio::Calibration& calibration) {
   std::vector<info::discover::FittedNumber> numbers;
   for (std::size_t i = 0; i < calibration.parameters.size(); ++i) {
-    const bio::CalibratedParameter& one = calibration.parameters[i];
-    if (isKnot(one)) continue;
-    const auto& prior = one.asked.prior;
-    numbers.push_back({i, one.asked.name, one.asked.unit, one.model, one.value, one.sd,
-                       prior ? prior->sd : std::nan(""),
-                       prior ? (one.value - prior->mean) / prior->sd : std::nan("")});
+    const bio::CalibratedParameter& parameter = calibration.parameters[i];
+    if (isKnot(parameter)) continue;
+    const auto& prior = parameter.asked.prior;
+    numbers.push_back({i, parameter.asked.name, parameter.asked.unit, parameter.model,
+                       parameter.value, parameter.sd, prior ? prior->sd : std::nan(""),
+                       prior ? (parameter.value - prior->mean) / prior->sd : std::nan("")});
   }
   return numbers;
 }
@@ -164,23 +167,24 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
               f.heldOut ? orNull(rmse(*f.heldOut, c.heldOutBefore)) : Json(nullptr));
   if (!measuresOnlyAngles(f.training)) summary.set("channels", channelsJson(f));
   Json estimates = Json::object();
-  for (const bio::CalibratedParameter& one : c.parameters) {
-    if (isKnot(one)) continue;  // of latent_excitations
-    estimates[one.asked.name] = estimateJson(f, one);
+  for (const bio::CalibratedParameter& parameter : c.parameters) {
+    if (isKnot(parameter)) continue;  // of latent_excitations
+    estimates[parameter.asked.name] = estimateJson(f, parameter);
     // of another minimum other_minima warns
-    if (!one.why.empty() && !one.ofTrial && std::isnan(one.lower)) summary.warn(one.why);
+    if (!parameter.why.empty() && !parameter.ofTrial && std::isnan(parameter.lower))
+      summary.warn(parameter.why);
   }
   summary.set("estimates", estimates);
   for (const std::string& remark : c.remarks) summary.warn(remark);
   tellLatent(f, summary);
   tellPredictions(f, summary);
   const bool firstAreAngles = f.training.channels().front().areAngles;
-  summary.set("noise_deg", firstAreAngles ? Json(c.noise.sd * radian) : Json(nullptr));
+  summary.set("noise_deg", firstAreAngles ? Json(c.noise.sd * degreesPerRadian) : Json(nullptr));
   summary.set("noise_is", f.options.noise ? "given" : "from the residuals");
-  summary.set("sample_scatter_deg", c.noiseFloor * radian);
+  summary.set("sample_scatter_deg", c.noiseFloor * degreesPerRadian);
   summary.set("residual_above_noise", c.leavesMoreThanNoise());
   const double noises =
-      f.options.noise ? rmse(f.training, c.after) / (radian * *f.options.noise) : 0;
+      f.options.noise ? rmse(f.training, c.after) / (degreesPerRadian * *f.options.noise) : 0;
   if (noises > 3) {
     summary.warn(
         fmt::format("the residual is {:.3g} times the noise given by --noise-deg: these parameters "

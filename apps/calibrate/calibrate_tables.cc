@@ -16,7 +16,7 @@ Table correlationTable(const CalibrateFindings& f) {
     parameters.push_back(f.calibration.parameters[i]);
     place.push_back(static_cast<Eigen::Index>(i));
   }
-  for (const auto& one : parameters) table.columns.push_back(one.asked.name);
+  for (const auto& parameter : parameters) table.columns.push_back(parameter.asked.name);
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     std::vector<std::string> row = {parameters[i].asked.name};
     for (std::size_t j = 0; j < parameters.size(); ++j) {
@@ -32,9 +32,9 @@ Table correlationTable(const CalibrateFindings& f) {
 Table startTable(const CalibrateFindings& f) {
   Table table{"Starts", {"start", "cost [nats]", "ended"}, {}};
   for (std::size_t i = 0; i < f.calibration.starts.size(); ++i) {
-    const info::StartOutcome& one = f.calibration.starts[i];
+    const info::StartOutcome& outcome = f.calibration.starts[i];
     table.rows.push_back(
-        {i == 0 ? "model" : fmt::format("{}", i + 1), numberText(one.cost, 7), one.why});
+        {i == 0 ? "model" : fmt::format("{}", i + 1), numberText(outcome.cost, 7), outcome.why});
   }
   return table;
 }

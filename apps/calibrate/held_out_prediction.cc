@@ -23,7 +23,7 @@ std::vector<ShownSeries> shownSeries(const CalibrateFindings& f) {
        bio::predictedSeries(f.training, *f.heldOut, f.calibration, f.options.confidence)) {
     const bio::MeasuredSeries& series = f.heldOut->series()[one.series];
     const bio::MeasuredGroup& channel = f.heldOut->channels()[series.channel];
-    const double factor = channel.areAngles ? radian : 1;
+    const double factor = channel.areAngles ? degreesPerRadian : 1;
     for (double* value : {&one.measuredPeak, &one.predictedPeak, &one.sdOfEstimates, &one.noise,
                           &one.lower, &one.upper}) {
       *value *= factor;
@@ -41,18 +41,18 @@ void tellPredictions(const CalibrateFindings& f, Summary& summary) {
   if (all.empty()) return;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const ShownSeries& shown : all) {
-    const bio::PredictedSeries& one = shown.values;
+    const bio::PredictedSeries& series = shown.values;
     list.push_back({{"file", shown.file},
                     {"channel", shown.channel},
                     {"unit", shown.unit},
-                    {"peak_measured", one.measuredPeak},
-                    {"peak_predicted", orNull(one.predictedPeak)},
-                    {"sd_of_estimates", orNull(one.sdOfEstimates)},
-                    {"noise", orNull(one.noise)},
-                    {"interval", {orNull(one.lower), orNull(one.upper)}},
+                    {"peak_measured", series.measuredPeak},
+                    {"peak_predicted", orNull(series.predictedPeak)},
+                    {"sd_of_estimates", orNull(series.sdOfEstimates)},
+                    {"noise", orNull(series.noise)},
+                    {"interval", {orNull(series.lower), orNull(series.upper)}},
                     {"holds_peak", nullptr},
-                    {"share_of_samples_held", orNull(one.shareHeld)}});
-    if (one.holdsPeak) list.back()["holds_peak"] = *one.holdsPeak;
+                    {"share_of_samples_held", orNull(series.shareHeld)}});
+    if (series.holdsPeak) list.back()["holds_peak"] = *series.holdsPeak;
   }
   summary.set("held_out_predictions", list);
 }
@@ -66,16 +66,17 @@ Table predictionTable(const CalibrateFindings& f) {
        "samples in their intervals"},
       {}};
   for (const ShownSeries& shown : shownSeries(f)) {
-    const bio::PredictedSeries& one = shown.values;
+    const bio::PredictedSeries& series = shown.values;
     table.rows.push_back(
-        {shown.file, shown.channel, withUnit(one.measuredPeak, shown.unit, 4),
-         withUnit(one.predictedPeak, shown.unit, 4),
-         one.holdsPeak ? fmt::format("{} … {}", numberText(one.lower, 4), numberText(one.upper, 4))
-                       : std::string("unknown noise"),
-         !one.holdsPeak   ? "–"
-         : *one.holdsPeak ? "yes"
-                          : "no",
-         one.holdsPeak ? fmt::format("{:.0f} %", 100 * one.shareHeld) : std::string("–")});
+        {shown.file, shown.channel, withUnit(series.measuredPeak, shown.unit, 4),
+         withUnit(series.predictedPeak, shown.unit, 4),
+         series.holdsPeak
+             ? fmt::format("{} … {}", numberText(series.lower, 4), numberText(series.upper, 4))
+             : std::string("unknown noise"),
+         !series.holdsPeak   ? "–"
+         : *series.holdsPeak ? "yes"
+                             : "no",
+         series.holdsPeak ? fmt::format("{:.0f} %", 100 * series.shareHeld) : std::string("–")});
   }
   return table;
 }

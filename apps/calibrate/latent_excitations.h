@@ -9,7 +9,7 @@ namespace app {
 bool isKnot(const bio::CalibratedParameter& parameter);
 
 /// "TRIlat in a.sto: …", one line each.
-std::string inWords(const bio::PulledExcitation& one);
+std::string inWords(const bio::PulledExcitation& excitation);
 
 /// Sets `latent_excitations`, and warns of those pulled by more than 3 standard deviations.
 void tellLatent(const CalibrateFindings& findings, Summary& summary);

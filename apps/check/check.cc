@@ -96,8 +96,9 @@ Contents checkModel(const std::string& file, const bio::Model& model, Findings& 
   for (const bio::LengthJump& jump : bio::lengthJumps(model)) {
     findings.add(file, "unusual", fmt::format("muscle '{}': {}", jump.muscle, describe(jump)));
   }
-  for (const bio::OpenSimDifference& one : bio::openSimDifferences(model)) {
-    findings.add(file, "unusual", fmt::format("muscle '{}': {}", one.muscle, describe(one)));
+  for (const bio::OpenSimDifference& difference : bio::openSimDifferences(model)) {
+    findings.add(file, "unusual",
+                 fmt::format("muscle '{}': {}", difference.muscle, describe(difference)));
   }
   std::size_t coordinates = 0;
   std::vector<std::string> prescribed;
@@ -204,10 +205,11 @@ class Check : public Command {
             models.push_back(std::move(model));
             modelFiles.push_back(file);
           }
-          const Contents contents = areModels ? checkModel(file, models.back(), findings)
-                                    : bio::isRecordedFile(file)
-                                        ? checkRecording(file, findings, summary, recordings, context)
-                                        : checkTrial(file, models, findings);
+          const Contents contents =
+              areModels ? checkModel(file, models.back(), findings)
+              : bio::isRecordedFile(file)
+                  ? checkRecording(file, findings, summary, recordings, context)
+                  : checkTrial(file, models, findings);
           report.details.insert(report.details.end(), contents.begin(), contents.end());
         } catch (const bio::FileError& error) {
           findings.add(file, "error", error.what());

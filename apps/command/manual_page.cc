@@ -69,10 +69,11 @@ bool sameOption(const DescribedOption& a, const DescribedOption& b) {
 }
 
 bool isShared(const DescribedCommand& program, const DescribedOption& option) {
-  return std::all_of(program.subcommands.begin(), program.subcommands.end(), [&](const auto& one) {
-    return std::any_of(one.options.begin(), one.options.end(),
-                       [&](const auto& other) { return sameOption(option, other); });
-  });
+  return std::all_of(
+      program.subcommands.begin(), program.subcommands.end(), [&](const auto& subcommand) {
+        return std::any_of(subcommand.options.begin(), subcommand.options.end(),
+                           [&](const auto& other) { return sameOption(option, other); });
+      });
 }
 
 std::string synopsis(const DescribedCommand& command, const std::string& name = "fisherhill") {
@@ -109,7 +110,7 @@ std::string subcommandSection(const DescribedCommand& program, const DescribedCo
   for (const DescribedOption& option : command.options) {
     if (isShared(program, option)) continue;
     auto group = std::find_if(groups.begin(), groups.end(),
-                              [&](const auto& one) { return one.first == option.group; });
+                              [&](const auto& group) { return group.first == option.group; });
     if (group == groups.end()) {
       group = groups.insert(group, {option.group, ".PP\n" + italic(option.group) + "\n"});
     }

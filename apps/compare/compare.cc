@@ -78,9 +78,9 @@ class Compare : public Command {
     addExternalLoads(externalLoads_, model, summary);
     chooseCoordinates(simulation_, model, {trial_});
     requireFreeCoordinate(simulation_);
-    const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
-    const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
-    const auto& free = arm.skeleton().coordinates();
+    const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
+    const TrialInput input = readTrialInput(trial_, model, system, simulation_, summary);
+    const auto& free = system.skeleton().coordinates();
     const auto rotation =
         std::find_if(free.begin(), free.end(), [](const auto& c) { return c.isRotation; });
     if (rotation == free.end())
@@ -96,20 +96,21 @@ class Compare : public Command {
     {
       ProgressBar bar("compare");
       options.progress = [&](double done) { bar.update(done); };
-      comparison = bio::compareIntegrators(arm, input.recorded.excitation, input.start, options);
+      comparison = bio::compareIntegrators(system, input.recorded.excitation, input.start, options);
     }
-    if (const auto left = bio::leftRange(arm, comparison.reference.motion)) {
+    if (const auto left = bio::leftRange(system, comparison.reference.motion)) {
       summary.warn(left->what);
     }
     if (comparison.reference.completed()) {
-      for (AlsoCurve& one : also) {
-        one.rms = bio::rmsDifference(arm, one.curve, comparison.reference.motion, rotation->name);
+      for (AlsoCurve& curve : also) {
+        curve.rms =
+            bio::rmsDifference(system, curve.curve, comparison.reference.motion, rotation->name);
       }
     }
     folder.write("compare.csv", [&](std::ostream& out) { writeCells(comparison, out); });
 
     const bio::CompareCell* chosen = chosenCell(comparison);
-    const CompareFindings findings{model_,  trial_,     input.trial, arm,   *rotation,
+    const CompareFindings findings{model_,  trial_,     input.trial, system, *rotation,
                                    options, comparison, also,        chosen};
     if (chosen != nullptr) {
       summary.setSimulation(bio::name(chosen->integrator), chosen->step, options.duration,
@@ -145,9 +146,9 @@ class Compare : public Command {
     addExternalLoads(externalLoads_, model, summary);
     chooseCoordinates(simulation_, model, {trial_});
     requireFreeCoordinate(simulation_);
-    const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
-    const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
-    const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
+    const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
+    const TrialInput input = readTrialInput(trial_, model, system, simulation_, summary);
+    const bio::Coordinate& coordinate = system.skeleton().coordinates().front();
     bio::MuscleClassTrial trial;
     trial.recorded = input.recorded;
     trial.start = {input.start.q, input.start.qDot};
@@ -158,9 +159,9 @@ class Compare : public Command {
     {
       ProgressBar bar("compare");
       trial.progress = [&](double done) { bar.update(done); };
-      classes = bio::compareMuscleClasses(model, armOptions(simulation_), classes_, trial);
+      classes = bio::compareMuscleClasses(model, systemOptions(simulation_), classes_, trial);
     }
-    if (const auto left = bio::leftRange(arm, classes.front().motion)) summary.warn(left->what);
+    if (const auto left = bio::leftRange(system, classes.front().motion)) summary.warn(left->what);
     const MuscleFindings findings{model_, trial_, coordinate, classes, trial.noise};
     folder.write("muscles.csv", [&](std::ostream& out) { writeMuscleClasses(findings, out); });
     folder.write("muscle_bounds.csv", [&](std::ostream& out) { writeMuscleBounds(findings, out); });
@@ -171,8 +172,8 @@ class Compare : public Command {
     const Report report = musclesReport(findings);
     writePictures(report, folder);
     deliver(context, summary, report, folder);
-    const bool isFine = std::all_of(classes.begin(), classes.end(), [](const auto& one) {
-      return one.motion.outcome == bio::Outcome::completed;
+    const bool isFine = std::all_of(classes.begin(), classes.end(), [](const auto& class_) {
+      return class_.motion.outcome == bio::Outcome::completed;
     });
     return isFine ? ExitStatus::done : ExitStatus::answerIsNo;
   }

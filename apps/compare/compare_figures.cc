@@ -28,7 +28,7 @@ std::string longName(bio::Integrator integrator) {
 }
 
 Eigen::Index shownRow(const CompareFindings& f) {
-  return f.arm.skeleton().indexOf(f.coordinate.name);
+  return f.system.skeleton().indexOf(f.coordinate.name);
 }
 
 /// A motion in degrees, at most about a thousand points of it.
@@ -39,11 +39,11 @@ Series motionSeries(const CompareFindings& f, const std::string& name,
   const std::size_t every = time.size() / 1000 + 1;
   for (std::size_t k = 0; k < time.size(); k += every) {
     series.x.push_back(time[k]);
-    series.y.push_back(q(shownRow(f), static_cast<Eigen::Index>(k)) * radian);
+    series.y.push_back(q(shownRow(f), static_cast<Eigen::Index>(k)) * degreesPerRadian);
   }
   if (!time.empty() && series.x.back() != time.back()) {
     series.x.push_back(time.back());
-    series.y.push_back(q(shownRow(f), q.cols() - 1) * radian);
+    series.y.push_back(q(shownRow(f), q.cols() - 1) * degreesPerRadian);
   }
   return series;
 }
@@ -111,11 +111,11 @@ Figure variationalFigure(const CompareFindings& f) {
   if (usual != nullptr) {
     addCell(f, *usual, figure);
     figure.caption = fmt::format("RMS error at {} s: {:.2g} deg", numberText(usual->step),
-                                 usual->error.rms * radian);
+                                 usual->error.rms * degreesPerRadian);
     if (longest != usual) {
       addCell(f, *longest, figure);
       figure.caption += fmt::format("; at {} s: {:.2g} deg", numberText(longest->step),
-                                    longest->error.rms * radian);
+                                    longest->error.rms * degreesPerRadian);
     }
     figure.caption += ".";
   }
@@ -136,7 +136,7 @@ Figure workPrecisionFigure(const CompareFindings& f) {
     for (const auto* cell : cellsOf(f, integrator)) {
       if (!isOk(*cell)) continue;
       series.x.push_back(cell->wallSeconds * 1e3);
-      series.y.push_back(cell->error.rms * radian);
+      series.y.push_back(cell->error.rms * degreesPerRadian);
     }
     figure.series.push_back(std::move(series));
   }
@@ -167,7 +167,7 @@ Figure errorFigure(const CompareFindings& f) {
     Series series{.name = longName(integrator)};
     for (const auto& [step, error] : errors) {
       series.x.push_back(step);
-      series.y.push_back(error * radian);
+      series.y.push_back(error * degreesPerRadian);
     }
     figure.series.push_back(std::move(series));
   }

@@ -12,8 +12,8 @@
 namespace app {
 namespace {
 
-bool reachedEnd(const bio::MuscleClassMotion& one) {
-  return one.motion.outcome == bio::Outcome::completed;
+bool reachedEnd(const bio::MuscleClassMotion& motion) {
+  return motion.motion.outcome == bio::Outcome::completed;
 }
 
 double shownFactorOf(const bio::Coordinate& coordinate) {
@@ -26,18 +26,19 @@ std::string unitSuffix(const bio::Coordinate& coordinate) {
 
 /// The largest difference of the class from the first in any free rotation, and what of the
 /// measured coordinate's no change of parameters explains.
-std::string rowOf(const bio::MuscleClassMotion& one, double factor) {
-  if (!reachedEnd(one)) return ",,,,,,,";
-  return fmt::format(
-      "{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g}",
-      one.difference.rms * 180 / std::numbers::pi, one.difference.largest * 180 / std::numbers::pi,
-      one.difference.largestAt, one.measured * factor, one.unexplained * factor,
-      one.information.determinedCombinations, one.motion.wallSeconds * 1e3, one.energyError);
+std::string rowOf(const bio::MuscleClassMotion& motion, double factor) {
+  if (!reachedEnd(motion)) return ",,,,,,,";
+  return fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g}",
+                     motion.difference.rms * 180 / std::numbers::pi,
+                     motion.difference.largest * 180 / std::numbers::pi,
+                     motion.difference.largestAt, motion.measured * factor,
+                     motion.unexplained * factor, motion.information.determinedCombinations,
+                     motion.motion.wallSeconds * 1e3, motion.energyError);
 }
 
-double relativeBound(const bio::MuscleClassMotion& one, std::size_t i) {
-  return one.information.boundJoint[static_cast<Eigen::Index>(i)] /
-         std::abs(one.information.parameters[i].start);
+double relativeBound(const bio::MuscleClassMotion& motion, std::size_t i) {
+  return motion.information.boundJoint[static_cast<Eigen::Index>(i)] /
+         std::abs(motion.information.parameters[i].start);
 }
 
 /// The class whose muscles' numbers name the rows: the first that has them.
@@ -51,20 +52,20 @@ void writeMuscleClasses(const MuscleFindings& f, std::ostream& out) {
   const std::string unit = unitSuffix(f.coordinate);
   out << "class,status,rms_deg,max_deg,max_at_s,measured_rms" << unit << ",unexplained_rms" << unit
       << ",determined_combinations,wall_ms,energy_error_J\n";
-  for (const bio::MuscleClassMotion& one : f.classes) {
-    out << one.name << ',' << bio::name(one.motion.outcome) << ','
-        << rowOf(one, shownFactorOf(f.coordinate)) << '\n';
+  for (const bio::MuscleClassMotion& motion : f.classes) {
+    out << motion.name << ',' << bio::name(motion.motion.outcome) << ','
+        << rowOf(motion, shownFactorOf(f.coordinate)) << '\n';
   }
 }
 
 void writeMuscleBounds(const MuscleFindings& f, std::ostream& out) {
   out << "parameter";
-  for (const bio::MuscleClassMotion& one : f.classes) out << ',' << one.name;
+  for (const bio::MuscleClassMotion& motion : f.classes) out << ',' << motion.name;
   out << '\n';
   for (std::size_t i = 0; i < rowNames(f).size(); ++i) {
     out << rowNames(f)[i].name;
-    for (const bio::MuscleClassMotion& one : f.classes) {
-      out << ',' << (reachedEnd(one) ? fmt::format("{:.6g}", relativeBound(one, i)) : "");
+    for (const bio::MuscleClassMotion& motion : f.classes) {
+      out << ',' << (reachedEnd(motion) ? fmt::format("{:.6g}", relativeBound(motion, i)) : "");
     }
     out << '\n';
   }
@@ -74,21 +75,22 @@ void tellMuscles(const MuscleFindings& f, Summary& summary) {
   const std::string unit = unitSuffix(f.coordinate);
   const double factor = shownFactorOf(f.coordinate);
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const bio::MuscleClassMotion& one : f.classes) {
-    nlohmann::ordered_json row{{"class", one.name}, {"status", bio::name(one.motion.outcome)}};
-    if (reachedEnd(one)) {
-      row["rms_deg"] = one.difference.rms * 180 / std::numbers::pi;
-      row["max_deg"] = one.difference.largest * 180 / std::numbers::pi;
-      row["max_at_s"] = one.difference.largestAt;
-      row["measured_rms" + unit] = one.measured * factor;
-      row["unexplained_rms" + unit] = one.unexplained * factor;
-      row["determined_combinations"] = one.information.determinedCombinations;
-      row["wall_s"] = one.motion.wallSeconds;
-      row["energy_error_J"] = one.energyError;
+  for (const bio::MuscleClassMotion& motion : f.classes) {
+    nlohmann::ordered_json row{{"class", motion.name},
+                               {"status", bio::name(motion.motion.outcome)}};
+    if (reachedEnd(motion)) {
+      row["rms_deg"] = motion.difference.rms * 180 / std::numbers::pi;
+      row["max_deg"] = motion.difference.largest * 180 / std::numbers::pi;
+      row["max_at_s"] = motion.difference.largestAt;
+      row["measured_rms" + unit] = motion.measured * factor;
+      row["unexplained_rms" + unit] = motion.unexplained * factor;
+      row["determined_combinations"] = motion.information.determinedCombinations;
+      row["wall_s"] = motion.motion.wallSeconds;
+      row["energy_error_J"] = motion.energyError;
     } else {
-      row["why"] = one.motion.why;
+      row["why"] = motion.motion.why;
     }
-    row["lost"] = one.lost;
+    row["lost"] = motion.lost;
     list.push_back(row);
   }
   summary.set("muscle_classes", list);
@@ -100,8 +102,8 @@ Report musclesReport(const MuscleFindings& f) {
   Report report;
   report.title = fmt::format("Muscle classes of {} on {}", f.modelFile, f.trialFile);
   const bio::MuscleClassMotion* widest = nullptr;
-  for (const bio::MuscleClassMotion& one : f.classes) {
-    if (reachedEnd(one) && (!widest || one.measured > widest->measured)) widest = &one;
+  for (const bio::MuscleClassMotion& motion : f.classes) {
+    if (reachedEnd(motion) && (!widest || motion.measured > widest->measured)) widest = &motion;
   }
   report.verdict = fmt::format(
       "The class alone changes {} by up to {:.3g} {} RMS ({}); {:.3g} {} of that no change of the "
@@ -120,33 +122,34 @@ Report musclesReport(const MuscleFindings& f) {
        fmt::format("unexplained RMS [{}]", unit), "determined combinations", "time [ms]"},
       {}};
   Table bounds{"What the data tell: standard deviation over value", {"parameter"}, {}};
-  for (const bio::MuscleClassMotion& one : f.classes) {
-    bounds.columns.push_back(one.name);
-    figure.series.push_back({.name = one.name, .x = one.motion.time, .y = {}});
-    const Eigen::VectorXd q = one.motion.q.row(0) * factor;
+  for (const bio::MuscleClassMotion& motion : f.classes) {
+    bounds.columns.push_back(motion.name);
+    figure.series.push_back({.name = motion.name, .x = motion.motion.time, .y = {}});
+    const Eigen::VectorXd q = motion.motion.q.row(0) * factor;
     figure.series.back().y = asList(q);
-    if (!reachedEnd(one)) {
-      table.rows.push_back({one.name, one.motion.why, "", "", "", "", "", ""});
+    if (!reachedEnd(motion)) {
+      table.rows.push_back({motion.name, motion.motion.why, "", "", "", "", "", ""});
       continue;
     }
-    table.rows.push_back({one.name, "ok", numberText(one.difference.rms * 180 / std::numbers::pi),
-                          numberText(one.difference.largest * 180 / std::numbers::pi),
-                          numberText(one.measured * factor), numberText(one.unexplained * factor),
-                          std::to_string(one.information.determinedCombinations),
-                          numberText(one.motion.wallSeconds * 1e3)});
+    table.rows.push_back(
+        {motion.name, "ok", numberText(motion.difference.rms * 180 / std::numbers::pi),
+         numberText(motion.difference.largest * 180 / std::numbers::pi),
+         numberText(motion.measured * factor), numberText(motion.unexplained * factor),
+         std::to_string(motion.information.determinedCombinations),
+         numberText(motion.motion.wallSeconds * 1e3)});
   }
   for (std::size_t i = 0; i < rowNames(f).size(); ++i) {
     std::vector<std::string> row{rowNames(f)[i].name};
-    for (const bio::MuscleClassMotion& one : f.classes) {
-      row.push_back(reachedEnd(one) ? fmt::format("{:.3g}", relativeBound(one, i)) : "");
+    for (const bio::MuscleClassMotion& motion : f.classes) {
+      row.push_back(reachedEnd(motion) ? fmt::format("{:.3g}", relativeBound(motion, i)) : "");
     }
     bounds.rows.push_back(std::move(row));
   }
   report.mainFigure = figure;
   report.details = {table, bounds};
-  for (const bio::MuscleClassMotion& one : f.classes) {
-    for (const std::string& lost : one.lost) {
-      report.details.push_back(Paragraph{fmt::format("As {}: lost is {}", one.name, lost)});
+  for (const bio::MuscleClassMotion& motion : f.classes) {
+    for (const std::string& lost : motion.lost) {
+      report.details.push_back(Paragraph{fmt::format("As {}: lost is {}", motion.name, lost)});
     }
   }
   return report;

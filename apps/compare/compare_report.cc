@@ -24,7 +24,8 @@ Table cellTable(const CompareFindings& f) {
         {bio::name(cell.integrator), numberText(cell.step),
          isOk(cell) ? (cell.halvedSteps > 0 ? fmt::format("ok, {} halved", cell.halvedSteps) : "ok")
                     : fmt::format("{} at {} s", bio::name(cell.outcome), numberText(cell.failedAt)),
-         numberText(cell.error.rms * radian, 3), numberText(cell.error.largest * radian, 3),
+         numberText(cell.error.rms * degreesPerRadian, 3),
+         numberText(cell.error.largest * degreesPerRadian, 3),
          numberText(cell.wallSeconds * 1e3, 4), numberText(cell.newtonPerStep, 3),
          numberText(cell.energyError, 3)});
   }
@@ -55,13 +56,14 @@ std::string referenceText(const CompareFindings& f) {
       "The reference is CVODE at a relative tolerance of {:g}. At {:g} it differs by {:.2g} deg "
       "RMS and at most {:.2g} deg; interpolating it adds {:.2g} deg. Smaller errors are not "
       "resolved.",
-      reference.relativeTolerance, reference.looserTolerance, reference.problem.rms * radian,
-      reference.problem.largest * radian, reference.interpolationError * radian);
+      reference.relativeTolerance, reference.looserTolerance,
+      reference.problem.rms * degreesPerRadian, reference.problem.largest * degreesPerRadian,
+      reference.interpolationError * degreesPerRadian);
   if (!reference.confirmed()) {
     return fmt::format("{} It is disputed: {}.", text, reference.whyDisputed);
   }
   return fmt::format("{} The variational integrator at {:g} s confirms it to {:.2g} deg RMS.", text,
-                     reference.secondStep, reference.second.rms * radian);
+                     reference.secondStep, reference.second.rms * degreesPerRadian);
 }
 
 std::string verdictOf(const CompareFindings& f) {
@@ -74,7 +76,7 @@ std::string verdictOf(const CompareFindings& f) {
   if (isOk(*f.chosen)) {
     text += fmt::format("{} at {} s has an RMS error of {:.2g} deg against the converged reference",
                         bio::name(f.chosen->integrator), numberText(f.chosen->step),
-                        f.chosen->error.rms * radian);
+                        f.chosen->error.rms * degreesPerRadian);
   } else {
     text += fmt::format("{} at {} s does not reach the end", bio::name(f.chosen->integrator),
                         numberText(f.chosen->step));
@@ -97,18 +99,18 @@ void addMeasured(const CompareFindings& f, Report& report) {
     if (measured.what != bio::ofCoordinate(f.coordinate.name)) continue;
     Figure figure = besideFigure(f, "Comparison with the measured motion");
     const bio::MeasuredError error =
-        bio::compareWithMeasured(f.arm, f.comparison.reference.motion, measured);
+        bio::compareWithMeasured(f.system, f.comparison.reference.motion, measured);
     Series series{.name = "measured", .style = SeriesStyle::points};
     for (Eigen::Index k = 0; k < measured.times.size(); ++k) {
       series.x.push_back(measured.times[k]);
-      series.y.push_back(measured.values[k] * radian);
+      series.y.push_back(measured.values[k] * degreesPerRadian);
     }
     figure.series.push_back(std::move(series));
     figure.caption = fmt::format(
         "The reference has an RMS error of {:.3g} deg against the measured motion, which is an "
         "error of the model and not of an integrator. Each integrator is drawn at its longest step "
         "with an error below {:.2g} deg.",
-        error.rms * radian, f.options.usefulError * radian);
+        error.rms * degreesPerRadian, f.options.usefulError * degreesPerRadian);
     report.details.push_back(std::move(figure));
   }
 }
@@ -116,12 +118,13 @@ void addMeasured(const CompareFindings& f, Report& report) {
 void addAlso(const CompareFindings& f, Report& report) {
   if (f.also.empty()) return;
   Figure figure = besideFigure(f, "Comparison with other programs");
-  for (const AlsoCurve& one : f.also) {
-    Series series{.name = one.name, .x = one.curve.time, .style = SeriesStyle::points};
-    for (const double value : one.curve.value) series.y.push_back(value * radian);
+  for (const AlsoCurve& curve : f.also) {
+    Series series{.name = curve.name, .x = curve.curve.time, .style = SeriesStyle::points};
+    for (const double value : curve.curve.value) series.y.push_back(value * degreesPerRadian);
     figure.series.push_back(std::move(series));
-    figure.caption += fmt::format("{}{} differs from the reference by {:.2g} deg (RMS).",
-                                  figure.caption.empty() ? "" : " ", one.name, one.rms * radian);
+    figure.caption +=
+        fmt::format("{}{} differs from the reference by {:.2g} deg (RMS).",
+                    figure.caption.empty() ? "" : " ", curve.name, curve.rms * degreesPerRadian);
   }
   report.details.push_back(std::move(figure));
 }
@@ -134,8 +137,9 @@ void writeCells(const bio::Comparison& comparison, std::ostream& out) {
          "energy_error_J\n";
   for (const bio::CompareCell& one : comparison.cells) {
     out << fmt::format("{},{},{},{},{},{},{},{},{}\n", bio::name(one.integrator), cell(one.step),
-                       bio::name(one.outcome), cell(one.failedAt), cell(one.error.rms * radian),
-                       cell(one.error.largest * radian), cell(one.wallSeconds * 1e3),
+                       bio::name(one.outcome), cell(one.failedAt),
+                       cell(one.error.rms * degreesPerRadian),
+                       cell(one.error.largest * degreesPerRadian), cell(one.wallSeconds * 1e3),
                        cell(one.newtonPerStep), cell(one.energyError));
   }
 }
@@ -156,7 +160,7 @@ void tellCompare(const CompareFindings& f, Summary& summary) {
   summary.set("largest_stable_step_s", stable);
   summary.set("observed_order", observed);
   summary.set("observed_order_steps_s", used);
-  summary.set("stable_means_rms_below_deg", f.options.usefulError * radian);
+  summary.set("stable_means_rms_below_deg", f.options.usefulError * degreesPerRadian);
   summary.set("reference_status", !reference.completed()  ? "failed"
                                   : reference.confirmed() ? "confirmed"
                                                           : "disputed");
@@ -166,28 +170,29 @@ void tellCompare(const CompareFindings& f, Summary& summary) {
     return;
   }
   summary.set("status", bio::name(f.chosen->outcome));
-  summary.set("rms_deg", f.chosen->error.rms * radian);
-  summary.set("max_deg", f.chosen->error.largest * radian);
+  summary.set("rms_deg", f.chosen->error.rms * degreesPerRadian);
+  summary.set("max_deg", f.chosen->error.largest * degreesPerRadian);
   summary.set("newton_iterations_per_step", f.chosen->newtonPerStep);
   summary.set("energy_error_J", f.chosen->energyError);
   summary.set("reference_relative_tolerances",
               Json::array({reference.looserTolerance, reference.relativeTolerance}));
-  summary.set("reference_disagreement_rms_deg", reference.problem.rms * radian);
-  summary.set("reference_disagreement_max_deg", reference.problem.largest * radian);
-  summary.set("reference_interpolation_rms_deg", reference.interpolationError * radian);
+  summary.set("reference_disagreement_rms_deg", reference.problem.rms * degreesPerRadian);
+  summary.set("reference_disagreement_max_deg", reference.problem.largest * degreesPerRadian);
+  summary.set("reference_interpolation_rms_deg", reference.interpolationError * degreesPerRadian);
   summary.set("reference_second_integrator", "vi");
   summary.set("reference_second_step_s", reference.secondStep);
-  summary.set("reference_second_rms_deg", reference.second.rms * radian);
+  summary.set("reference_second_rms_deg", reference.second.rms * degreesPerRadian);
   for (const bio::MeasuredChannel& measured : f.trial.measured) {
     if (measured.what != bio::ofCoordinate(f.coordinate.name)) continue;
-    summary.set("reference_from_measured_rms_deg",
-                bio::compareWithMeasured(f.arm, reference.motion, measured).rms * radian);
+    summary.set(
+        "reference_from_measured_rms_deg",
+        bio::compareWithMeasured(f.system, reference.motion, measured).rms * degreesPerRadian);
   }
-  for (const AlsoCurve& one : f.also) {
-    summary.set("also_" + one.name + "_rms_deg", one.rms * radian);
+  for (const AlsoCurve& curve : f.also) {
+    summary.set("also_" + curve.name + "_rms_deg", curve.rms * degreesPerRadian);
   }
   summary.set("timings_per_run", f.options.timings);
-  summary.set("notes", f.arm.notes());
+  summary.set("notes", f.system.notes());
 }
 
 Report compareReport(const CompareFindings& f) {
@@ -201,7 +206,7 @@ Report compareReport(const CompareFindings& f) {
   report.mainFigure = workPrecisionFigure(f);
   report.details.push_back(errorFigure(f));
   report.details.push_back(Paragraph{referenceText(f)});
-  if (!f.arm.switches().empty()) {
+  if (!f.system.switches().empty()) {
     report.details.push_back(
         Paragraph{"A muscle path of this model gains or loses points at certain angles, where its "
                   "length jumps. Every integrator ends a step at such an angle."});
@@ -211,7 +216,7 @@ Report compareReport(const CompareFindings& f) {
   report.details.push_back(Paragraph{
       fmt::format("A step is stable if the run reaches the end with an RMS error below {:.2g} deg "
                   "against the reference. The limit is found by bisection to {:.2g} %.",
-                  f.options.usefulError * radian, (f.options.stepResolution - 1) * 100)});
+                  f.options.usefulError * degreesPerRadian, (f.options.stepResolution - 1) * 100)});
   report.details.push_back(failureTimeline(f));
   if (Table failures = failureTable(f); !failures.rows.empty()) {
     report.details.push_back(std::move(failures));
@@ -233,9 +238,9 @@ Report compareReport(const CompareFindings& f) {
       "interval of its output; its internal steps follow from a relative tolerance of 1e-10. "
       "Halved steps are those that did not converge in one piece.",
       f.options.timings)});
-  if (!f.arm.notes().empty()) {
+  if (!f.system.notes().empty()) {
     report.details.push_back(Section{"Notes"});
-    for (const std::string& note : f.arm.notes()) report.details.push_back(Paragraph{note});
+    for (const std::string& note : f.system.notes()) report.details.push_back(Paragraph{note});
   }
   return report;
 }

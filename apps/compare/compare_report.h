@@ -24,7 +24,7 @@ struct CompareFindings {
   const std::string& modelFile;
   const std::string& trialFile;
   const bio::Trial& trial;
-  const bio::MusculoskeletalSystem& arm;
+  const bio::MusculoskeletalSystem& system;
   const bio::Coordinate& coordinate;  ///< the free rotation that the figures show
   const bio::CompareOptions& options;
   const bio::Comparison& comparison;

@@ -38,19 +38,20 @@ class Design : public Command {
     Summary summary(context);
     const bio::Model model = readModel(typed_.model, summary);
     chooseCoordinates(typed_.simulation, model, {typed_.trial}, false, typed_.observe);
-    const bio::MusculoskeletalSystem arm =
+    const bio::MusculoskeletalSystem system =
         movableSystem(model, typed_.model, typed_.simulation, summary);
-    const TrialInput input = readTrialInput(typed_.trial, model, arm, typed_.simulation, summary);
-    const bio::ParameterCatalogue catalogue(model, arm, {input.start.q, {}});
+    const TrialInput input =
+        readTrialInput(typed_.trial, model, system, typed_.simulation, summary);
+    const bio::ParameterCatalogue catalogue(model, system, {input.start.q, {}});
     const bio::SimulationOptions simulation = input.recorded.simulation;
     const bio::ExperimentDesign design(
-        arm, catalogue, catalogue.nominal(), input.trial, simulation,
-        question(catalogue, designOutputs(typed_, model, arm)), designLimits(typed_, arm),
-        bio::muscleGroups(arm, input.start.q, typed_.excite), typed_.knots);
+        system, catalogue, catalogue.nominal(), input.trial, simulation,
+        question(catalogue, designOutputs(typed_, model, system)), designLimits(typed_, system),
+        bio::muscleGroups(system, input.start.q, typed_.excite), typed_.knots);
     bio::DesignResult result;
     search(context, [&] { result = design.search(typed_.settings); });
     folder.writeFile("design.sto", [&](const std::filesystem::path& path) {
-      bio::writeTable(bio::plannedTable(arm, result.after.trial), path);
+      bio::writeTable(bio::plannedTable(system, result.after.trial), path);
     });
     DesignFindings findings{typed_.model, typed_.trial, model, design, result, {}, {}};
     for (const auto* list : {&design.question().parameters, &design.question().nuisance}) {
@@ -88,7 +89,7 @@ class Design : public Command {
     Summary summary(context);
     const bio::Model model = readModel(typed_.model, summary);
     chooseCoordinates(typed_.simulation, model, {typed_.trial}, false, typed_.observe);
-    const bio::MusculoskeletalSystem arm =
+    const bio::MusculoskeletalSystem system =
         movableSystem(model, typed_.model, typed_.simulation, summary);
     summary.addInput(typed_.trial);
     const bio::Trial trial =
@@ -99,18 +100,19 @@ class Design : public Command {
     question.second = typed_.separate[1];
     question = bio::discover::withSizes(question, byName(assignments(typed_.sizes)));
     const Eigen::VectorXd start =
-        bio::startCoordinates(trial, arm, byName(typed_.simulation.initial));
+        bio::startCoordinates(trial, system, byName(typed_.simulation.initial));
     for (Eigen::Index i = 0; i < start.size(); ++i) {
-      question.start[arm.skeleton().coordinates()[static_cast<std::size_t>(i)].name] = start[i];
+      question.start[system.skeleton().coordinates()[static_cast<std::size_t>(i)].name] = start[i];
     }
-    question.observed = designOutputs(typed_, model, arm);
+    question.observed = designOutputs(typed_, model, system);
     question.period = 1 / typed_.rate_Hz;
     const double duration = trial.duration();
     bio::discover::MusculoskeletalProblemOptions options;
     options.simulation = simulationOptions(typed_.simulation, trial.times[0], duration);
     const bio::discover::SeparatingDesign design(
-        model, armOptions(typed_.simulation), trial, options, question, designLimits(typed_, arm),
-        bio::muscleGroups(arm, arm.skeleton().defaultValues(), typed_.excite), typed_.knots);
+        model, systemOptions(typed_.simulation), trial, options, question,
+        designLimits(typed_, system),
+        bio::muscleGroups(system, system.skeleton().defaultValues(), typed_.excite), typed_.knots);
     bio::discover::SeparatingResult result;
     const auto begin = std::chrono::steady_clock::now();
     search(context, [&] { result = design.search(typed_.settings); });
@@ -118,7 +120,7 @@ class Design : public Command {
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const SeparatingFindings findings{typed_.model, typed_.trial, model, design, result};
     folder.writeFile("design.sto", [&](const std::filesystem::path& path) {
-      bio::writeTable(bio::plannedTable(arm, result.after.trial), path);
+      bio::writeTable(bio::plannedTable(system, result.after.trial), path);
     });
     summary.setSimulation(typed_.simulation.integrator, options.simulation.step, duration, wall);
     tellSeparation(findings, summary);
@@ -159,7 +161,7 @@ class Design : public Command {
       bar.update(static_cast<double>(done) / trials);
       return true;
     };
-    return bio::simulatedRepetitions(design, after, catalogue, armOptions(typed_.simulation),
+    return bio::simulatedRepetitions(design, after, catalogue, systemOptions(typed_.simulation),
                                      simulation, options);
   }
 

@@ -17,8 +17,8 @@ namespace {
 
 std::vector<std::string> givenOf(const std::vector<const CLI::Option*>& options) {
   std::vector<std::string> names;
-  for (const CLI::Option* one : options) {
-    if (one->count() > 0) names.push_back(one->get_name());
+  for (const CLI::Option* option : options) {
+    if (option->count() > 0) names.push_back(option->get_name());
   }
   return names;
 }
@@ -237,8 +237,8 @@ void checkDesignOptions(const DesignOptions& typed) {
                                             typed.limits.leastExcitation));
   }
   const std::map<std::string, double> torques = torquesOf(typed);
-  const bool isPushed =
-      std::any_of(torques.begin(), torques.end(), [](const auto& one) { return one.second > 0; });
+  const bool isPushed = std::any_of(torques.begin(), torques.end(),
+                                    [](const auto& torque) { return torque.second > 0; });
   if (!isPushed && typed.excite.empty()) {
     throw std::invalid_argument("--torque 0 without --excite leaves nothing to change");
   }
@@ -252,14 +252,16 @@ void checkDesignOptions(const DesignOptions& typed) {
   }
 }
 
-bio::DesignLimits designLimits(const DesignOptions& typed, const bio::MusculoskeletalSystem& arm) {
+bio::DesignLimits designLimits(const DesignOptions& typed,
+                               const bio::MusculoskeletalSystem& system) {
   bio::GivenLimits given;
   given.torque = torquesOf(typed);
-  for (const bio::Coordinate& one : arm.skeleton().coordinates()) {
-    given.speed[one.name] = typed.speed_deg * (one.isRotation ? degree : 1e-3);
+  for (const bio::Coordinate& coordinate : system.skeleton().coordinates()) {
+    given.speed[coordinate.name] =
+        typed.speed_deg * (coordinate.isRotation ? radiansPerDegree : 1e-3);
   }
-  for (const int prescribed : arm.prescribed()) {
-    given.speed.erase(arm.skeleton().coordinates()[static_cast<std::size_t>(prescribed)].name);
+  for (const int prescribed : system.prescribed()) {
+    given.speed.erase(system.skeleton().coordinates()[static_cast<std::size_t>(prescribed)].name);
   }
   given.range =
       byNameOf<std::pair<double, double>>("--range", typed.range, [](const std::string& text) {
@@ -269,7 +271,7 @@ bio::DesignLimits designLimits(const DesignOptions& typed, const bio::Musculoske
         }
         return std::pair(parseAngle(text.substr(0, comma)), parseAngle(text.substr(comma + 1)));
       });
-  bio::DesignLimits limits = bio::withCoordinates(typed.limits, arm, given);
+  bio::DesignLimits limits = bio::withCoordinates(typed.limits, system, given);
   if (const auto names = givenOf(typed.ofMotion); limits.coordinates.empty() && !names.empty()) {
     throw std::invalid_argument(
         fmt::format("{}: no coordinate is free to move", fmt::join(names, ", ")));
@@ -279,9 +281,10 @@ bio::DesignLimits designLimits(const DesignOptions& typed, const bio::Musculoske
 
 std::vector<bio::ChannelCandidate> designOutputs(const DesignOptions& typed,
                                                  const bio::Model& model,
-                                                 const bio::MusculoskeletalSystem& arm) {
-  if (!typed.observe.empty()) return readObserved(typed.observe, model, arm);
-  const auto observed = bio::freeCoordinates(arm, typed.noise_deg * degree, typed.noise_deg / 1000);
+                                                 const bio::MusculoskeletalSystem& system) {
+  if (!typed.observe.empty()) return readObserved(typed.observe, model, system);
+  const auto observed =
+      bio::freeCoordinates(system, typed.noise_deg * radiansPerDegree, typed.noise_deg / 1000);
   if (!observed.empty()) return observed;
   throw std::invalid_argument(
       "no coordinate is free to be observed: --observe must name what is measured");

@@ -39,12 +39,13 @@ void checkDesignOptions(const DesignOptions& typed);
 
 /// @throws std::invalid_argument what bio::withCoordinates throws, text of another kind, or an
 ///   option of free coordinates where there is none
-bio::DesignLimits designLimits(const DesignOptions& typed, const bio::MusculoskeletalSystem& arm);
+bio::DesignLimits designLimits(const DesignOptions& typed,
+                               const bio::MusculoskeletalSystem& system);
 
 /// What is observed: as typed, else all free coordinates.
 /// @throws std::invalid_argument what readObserved throws, or if there is nothing
 std::vector<bio::ChannelCandidate> designOutputs(const DesignOptions& typed,
                                                  const bio::Model& model,
-                                                 const bio::MusculoskeletalSystem& arm);
+                                                 const bio::MusculoskeletalSystem& system);
 
 }  // namespace app

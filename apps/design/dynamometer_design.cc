@@ -46,12 +46,12 @@ ExitStatus designOnDynamometer(const CommandContext& context, const DesignOption
   checkRoles(options, typed.simulation, model);
   SimulationOptions simulation = typed.simulation;
   simulation.prescribed = {options.coordinate};
-  const bio::MusculoskeletalSystem arm = movableSystem(model, typed.model, simulation, summary);
+  const bio::MusculoskeletalSystem system = movableSystem(model, typed.model, simulation, summary);
   const bio::Coordinate& coordinate = bio::findCoordinate(model, options.coordinate);
   bio::DynamometerQuestion question = dynamometerQuestion(typed, coordinate);
   question.threads = context.threads;
   const bio::DynamometerPlan plan = bio::planOnDynamometer(
-      model, arm, armOptions(simulation), simulationOptions(simulation, 0, 1), question);
+      model, system, systemOptions(simulation), simulationOptions(simulation, 0, 1), question);
   for (std::size_t n = 0; n < plan.chosen.size(); ++n) {
     folder.writeFile(names[n], [&](const std::filesystem::path& path) {
       bio::writeTable(plan.chosen[n].trial, path);

@@ -119,9 +119,9 @@ bio::DynamometerQuestion dynamometerQuestion(const DesignOptions& typed,
   question.nuisance = typed.nuisance;
   question.count = options.count;
   question.noise = options.momentNoise;
-  question.angleNoise = turns ? typed.noise_deg * degree : typed.noise_deg / 1000;
+  question.angleNoise = turns ? typed.noise_deg * radiansPerDegree : typed.noise_deg / 1000;
   question.rate = typed.rate_Hz;
-  question.fastest = turns ? typed.speed_deg * degree : typed.speed_deg / 1000;
+  question.fastest = turns ? typed.speed_deg * radiansPerDegree : typed.speed_deg / 1000;
   question.surprise = typed.limits.surprise;
   question.positions = quantities(options.angles, turns, "--angles");
   question.speeds = quantities(options.speeds, turns, "--speeds");

@@ -15,22 +15,23 @@ using Eigen::Index;
 namespace course = bio::dynamometer;
 
 bool measuresAngles(const bio::DynamometerPlan& plan) {
-  return std::any_of(plan.chosen.begin(), plan.chosen.end(),
-                     [](const bio::DynamometerExperiment& one) { return one.measuresAngle(); });
+  return std::any_of(
+      plan.chosen.begin(), plan.chosen.end(),
+      [](const bio::DynamometerExperiment& experiment) { return experiment.measuresAngle(); });
 }
 
 /// ", of 0.5 deg of the angle", if it is measured.
 std::string angleNoiseOf(const bio::DynamometerPlan& plan, const bio::DynamometerQuestion& question,
                          bool turns) {
   if (!measuresAngles(plan)) return "";
-  return turns ? fmt::format(", of {:g} deg of the angle", question.angleNoise * radian)
+  return turns ? fmt::format(", of {:g} deg of the angle", question.angleNoise * degreesPerRadian)
                : fmt::format(", of {:g} mm of the shift", question.angleNoise * 1000);
 }
 
 }  // namespace
 
 void tellDynamometer(const bio::DynamometerPlan& plan, bool turns, Summary& summary) {
-  const double unit = turns ? radian : 1;
+  const double unit = turns ? degreesPerRadian : 1;
   nlohmann::ordered_json before = nlohmann::ordered_json::object(), now = before;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
@@ -38,21 +39,21 @@ void tellDynamometer(const bio::DynamometerPlan& plan, bool turns, Summary& summ
     now[plan.parameters[i].name] = plan.bounds.back()[static_cast<Index>(i)];
   }
   for (std::size_t n = 0; n < plan.chosen.size(); ++n) {
-    const bio::DynamometerExperiment& one = plan.chosen[n];
+    const bio::DynamometerExperiment& experiment = plan.chosen[n];
     nlohmann::ordered_json bounds = nlohmann::ordered_json::object();
     for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
       bounds[plan.parameters[i].name] = plan.bounds[n][static_cast<Index>(i)];
     }
     const char* of = turns ? "_deg" : "_m";
-    list.push_back({{"kind", bio::name(one.kind)},
-                    {fmt::format("from{}", of), one.from * unit},
-                    {fmt::format("to{}", of), one.to * unit},
-                    {fmt::format("speed{}_per_s", of), one.speed * unit},
-                    {"muscles", one.group},
-                    {"effort_percent", 100 * one.effort},
-                    {"load_percent", 100 * one.load},
-                    {turns ? "torque_Nm" : "force_N", one.torque},
-                    {"instruction", bio::instructionOf(one, turns)},
+    list.push_back({{"kind", bio::name(experiment.kind)},
+                    {fmt::format("from{}", of), experiment.from * unit},
+                    {fmt::format("to{}", of), experiment.to * unit},
+                    {fmt::format("speed{}_per_s", of), experiment.speed * unit},
+                    {"muscles", experiment.group},
+                    {"effort_percent", 100 * experiment.effort},
+                    {"load_percent", 100 * experiment.load},
+                    {turns ? "torque_Nm" : "force_N", experiment.torque},
+                    {"instruction", bio::instructionOf(experiment, turns)},
                     {"information_nats", plan.information[n]},
                     {"bounds", bounds}});
   }
@@ -70,16 +71,16 @@ Report dynamometerReport(const bio::DynamometerPlan& plan, const bio::Dynamomete
   report.title = fmt::format("Experiments on a dynamometer: {}", question.coordinate);
   std::vector<std::string> changes;
   for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
-    const bio::ModelParameter& one = plan.parameters[i];
+    const bio::ModelParameter& parameter = plan.parameters[i];
     changes.push_back(
-        fmt::format("{} from ± {} to ± {}", one.name, numberText(one.sd, 3),
-                    withUnit(plan.bounds.back()[static_cast<Index>(i)], one.unit, 3)));
+        fmt::format("{} from ± {} to ± {}", parameter.name, numberText(parameter.sd, 3),
+                    withUnit(plan.bounds.back()[static_cast<Index>(i)], parameter.unit, 3)));
   }
   report.verdict = fmt::format("{} experiments of {} are expected to bring {}.", plan.chosen.size(),
                                plan.candidates, fmt::join(changes, ", "));
   Table table{"In this order", {"", "instruction", "adds [nats]"}, {}};
-  for (const bio::ModelParameter& one : plan.parameters) {
-    table.columns.push_back(fmt::format("± {} [{}]", one.name, unitText(one.unit)));
+  for (const bio::ModelParameter& parameter : plan.parameters) {
+    table.columns.push_back(fmt::format("± {} [{}]", parameter.name, unitText(parameter.unit)));
   }
   for (std::size_t n = 0; n < plan.chosen.size(); ++n) {
     std::vector<std::string> row = {fmt::format("{}", n + 1),

@@ -58,7 +58,7 @@ Figure excitationFigure(const PlannedInputs& planned, const bio::MuscleGroup& gr
 
 ShownUnit shownUnit(const std::string& unit) {
   if (!unit.starts_with("rad")) return {1, unitText(unit)};
-  return {radian, "deg" + unit.substr(3)};
+  return {degreesPerRadian, "deg" + unit.substr(3)};
 }
 
 const bio::Coordinate& PlannedInputs::coordinate(const std::string& name) const {
@@ -91,8 +91,8 @@ Figure predictionFigure(const PlannedInputs& planned, const bio::Observable& wha
 }
 
 void addInputFigures(const PlannedInputs& planned, Report& report) {
-  for (const bio::CoordinateLimits& one : planned.inputs.torques()) {
-    report.details.push_back(torqueFigure(planned, one));
+  for (const bio::CoordinateLimits& limits : planned.inputs.torques()) {
+    report.details.push_back(torqueFigure(planned, limits));
   }
   for (const bio::MuscleGroup& group : planned.inputs.groups()) {
     report.details.push_back(excitationFigure(planned, group));
@@ -108,11 +108,11 @@ void addLimit(Table& table, const std::string& quantity, double designed, double
 Table limitTable(const PlannedInputs& planned) {
   Table table{"Limits", {"quantity", "designed", "limit", "unit"}, {}};
   const bio::DesignInputs& inputs = planned.inputs;
-  for (const bio::CoordinateLimits& one : inputs.torques()) {
-    const std::string& name = one.coordinate;
+  for (const bio::CoordinateLimits& limits : inputs.torques()) {
+    const std::string& name = limits.coordinate;
     const std::string unit = planned.torqueUnit(name);
     addLimit(table, "largest torque on " + name, inputs.largestTorque(planned.after, name),
-             one.torque, {1, unit});
+             limits.torque, {1, unit});
     addLimit(table, "its largest rate", inputs.largestTorqueRate(planned.after, name),
              inputs.limits().torqueRate, {1, unit + "/s"});
   }
@@ -143,10 +143,11 @@ void tellPlan(const PlannedInputs& planned, const std::vector<bio::ChannelCandid
               const bio::DesignSearchRecord& record, Summary& summary) {
   const bio::DesignInputs& inputs = planned.inputs;
   Json outputs = Json::array(), coordinates = Json::array();
-  for (const bio::ChannelCandidate& one : observed) {
-    const ShownUnit unit = shownUnit(bio::unitOf(one.what, planned.model));
-    outputs.push_back(
-        {{"name", nameOf(one.what)}, {"unit", unit.name}, {"sd", one.sd * unit.factor}});
+  for (const bio::ChannelCandidate& candidate : observed) {
+    const ShownUnit unit = shownUnit(bio::unitOf(candidate.what, planned.model));
+    outputs.push_back({{"name", nameOf(candidate.what)},
+                       {"unit", unit.name},
+                       {"sd", candidate.sd * unit.factor}});
   }
   summary.set("outputs", outputs);
   const auto& all = inputs.limits().coordinates;
@@ -166,7 +167,7 @@ void tellPlan(const PlannedInputs& planned, const std::vector<bio::ChannelCandid
   // what there was before there were lists
   const bool isOneAngle = all.size() == 1 && planned.coordinate(all[0].coordinate).isRotation;
   if (isOneAngle && observed.front().what == bio::ofCoordinate(all[0].coordinate)) {
-    summary.set("noise_deg", observed.front().sd * radian);
+    summary.set("noise_deg", observed.front().sd * degreesPerRadian);
   }
   summary.set("rate_Hz", 1 / period);
   if (isOneAngle) {
@@ -188,10 +189,10 @@ void tellPlan(const PlannedInputs& planned, const std::vector<bio::ChannelCandid
 std::string measurementText(const std::vector<bio::ChannelCandidate>& observed, double period,
                             const bio::Model& model) {
   std::vector<std::string> texts;
-  for (const bio::ChannelCandidate& one : observed) {
-    const ShownUnit unit = shownUnit(bio::unitOf(one.what, model));
-    texts.push_back(fmt::format("{} (noise {} {})", nameOf(one.what),
-                                numberText(one.sd * unit.factor), unit.name));
+  for (const bio::ChannelCandidate& candidate : observed) {
+    const ShownUnit unit = shownUnit(bio::unitOf(candidate.what, model));
+    texts.push_back(fmt::format("{} (noise {} {})", nameOf(candidate.what),
+                                numberText(candidate.sd * unit.factor), unit.name));
   }
   return fmt::format("a sample every {} s of {}", numberText(period), fmt::join(texts, ", "));
 }

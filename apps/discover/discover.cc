@@ -72,7 +72,7 @@ class Discover : public Command {
     const auto all = options.get_options();
     for (std::size_t i = common; i < all.size(); ++i) {
       const std::string name = all[i]->get_name();
-      if (name != "--step" && name != "--ignore-extra") armOptions_.push_back(all[i]);
+      if (name != "--step" && name != "--ignore-extra") systemOptions_.push_back(all[i]);
     }
   }
 
@@ -106,7 +106,7 @@ class Discover : public Command {
   /// Options of the elbow that say nothing of a robot.
   void mustSuitRobots() const {
     if (noise_) throw std::invalid_argument("--noise-deg: with --system use --noise");
-    for (const CLI::Option* option : armOptions_) {
+    for (const CLI::Option* option : systemOptions_) {
       if (option->count() > 0) {
         throw std::invalid_argument(
             fmt::format("{} cannot be combined with --system", option->get_name()));
@@ -137,7 +137,7 @@ class Discover : public Command {
   std::optional<double> inputScatter_;
   SimulationOptions simulation_;
   RobotRequest robot_;
-  std::vector<const CLI::Option*> armOptions_;
+  std::vector<const CLI::Option*> systemOptions_;
 };
 
 }  // namespace

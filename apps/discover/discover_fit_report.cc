@@ -107,7 +107,7 @@ Table outputErrorTable(const DiscoverFindings& f) {
       const double error = (ofHeldOut ? heldOut : fitted)[static_cast<Eigen::Index>(o)];
       table.rows.push_back({output.name, output.unit, ofHeldOut ? "held out" : "fitted",
                             numberText(error, 3),
-                            numberText(output.scale * f.verdict.outputSd.sd(o), 3)});
+                            numberText(output.scale * f.verdict.sds.sd(o), 3)});
     }
   }
   return table;

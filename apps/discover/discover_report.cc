@@ -96,10 +96,10 @@ class Writer {
                 {}};
     for (const auto& effect : verdict.effects) {
       bool first = true;
-      for (const Estimate& one : effect.estimates) {
-        const auto& quantity = f_.data.quantities()[one.quantity];
+      for (const Estimate& estimate : effect.estimates) {
+        const auto& quantity = f_.data.quantities()[estimate.quantity];
         table.rows.push_back({first ? candidate(effect.candidate).name : "", quantity.name,
-                              quantity.unit, numberText(one.value), numberText(one.sd, 2),
+                              quantity.unit, numberText(estimate.value), numberText(estimate.sd, 2),
                               first ? numberText(effect.logBayesFactor) : "",
                               first && !verdict.vetoed ? numberText(effect.probability, 3) : "–"});
         first = false;
@@ -182,10 +182,10 @@ class Writer {
                  {"trial", "role", "original model [" + unit + "]",
                   "with all fitted parameters [" + unit + "]", "noise [" + unit + "]", "replayed"},
                  {}};
-    for (const bio::discover::RepairedTrial& one : f_.written->trials) {
-      const std::size_t i = one.index;
-      errors.rows.push_back({f_.trialFiles[i], one.isHeldOut ? "held out" : "fitted",
-                             figure(one.nominal), figure(one.after), figure(one.floor),
+    for (const bio::discover::RepairedTrial& trial : f_.written->trials) {
+      const std::size_t i = trial.index;
+      errors.rows.push_back({f_.trialFiles[i], trial.isHeldOut ? "held out" : "fitted",
+                             figure(trial.nominal), figure(trial.after), figure(trial.floor),
                              f_.written->model.empty() ? "–" : f_.written->replayFiles[i]});
     }
     report_.details.emplace_back(std::move(errors));
@@ -215,14 +215,15 @@ class Writer {
     section("Evidence");
     std::vector<IntervalRow> rows;
     std::vector<std::vector<std::string>> cells;
-    for (const auto& one : f_.verdict.finalists) {
+    for (const auto& finalist : f_.verdict.finalists) {
       if (rows.size() >= 20) break;
-      std::string kind =
-          one.effects.empty() ? "–" : info::discover::name(candidate(one.effects.front()).kind);
-      const std::string name = info::discover::describe(f_.data, one.effects);
+      std::string kind = finalist.effects.empty()
+                             ? "–"
+                             : info::discover::name(candidate(finalist.effects.front()).kind);
+      const std::string name = info::discover::describe(f_.data, finalist.effects);
       rows.push_back({.name = fmt::format("{} ({})", name, kind),
-                      .estimate = one.logEvidence,
-                      .interval = std::pair(0.0, one.logEvidence)});
+                      .estimate = finalist.logEvidence,
+                      .interval = std::pair(0.0, finalist.logEvidence)});
     }
     report_.details.emplace_back(VectorDrawing{
         "All hypotheses compared",
@@ -240,9 +241,9 @@ class Writer {
     for (std::size_t i = 1; i < f_.verdict.rivals.size(); ++i)
       table.columns.push_back(fmt::format("{} against {} [nats]", rivalName(f_.data, f_.verdict, 0),
                                           rivalName(f_.data, f_.verdict, i)));
-    for (const bio::discover::PredictedExperiment& one : f_.predictedExperiments) {
-      std::vector<std::string> row{one.sentence};
-      for (const double nats : one.nats) row.push_back(numberText(nats, 2));
+    for (const bio::discover::PredictedExperiment& experiment : f_.predictedExperiments) {
+      std::vector<std::string> row{experiment.sentence};
+      for (const double nats : experiment.nats) row.push_back(numberText(nats, 2));
       table.rows.push_back(std::move(row));
     }
     return table;
@@ -253,14 +254,14 @@ class Writer {
     if (list.empty()) return;
     section("Parameters");
     std::vector<IntervalRow> rows;
-    for (const Estimate& one : list) {
-      const auto& quantity = f_.data.quantities()[one.quantity];
+    for (const Estimate& estimate : list) {
+      const auto& quantity = f_.data.quantities()[estimate.quantity];
       const double scale =
-          quantity.logarithmic ? quantity.sd * std::max(one.value, 1e-300) : quantity.sd;
-      const double half = 1.96 * one.sd / scale;
+          quantity.logarithmic ? quantity.sd * std::max(estimate.value, 1e-300) : quantity.sd;
+      const double half = 1.96 * estimate.sd / scale;
       rows.push_back({.name = quantity.name,
-                      .estimate = one.surprise,
-                      .interval = std::pair(one.surprise - half, one.surprise + half),
+                      .estimate = estimate.surprise,
+                      .interval = std::pair(estimate.surprise - half, estimate.surprise + half),
                       .before = std::pair(-1.96, 1.96)});
     }
     report_.details.emplace_back(

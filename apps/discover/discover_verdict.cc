@@ -22,10 +22,10 @@ using nlohmann::ordered_json;
 
 ordered_json parametersJson(const DiscoverFindings& f, const std::vector<Estimate>& estimates) {
   ordered_json parameters = ordered_json::object();
-  for (const Estimate& one : estimates) {
-    const auto& quantity = f.data.quantities()[one.quantity];
+  for (const Estimate& estimate : estimates) {
+    const auto& quantity = f.data.quantities()[estimate.quantity];
     parameters[quantity.name] = {
-        {"value", orNull(one.value)}, {"sd", orNull(one.sd)}, {"unit", quantity.unit}};
+        {"value", orNull(estimate.value)}, {"sd", orNull(estimate.sd)}, {"unit", quantity.unit}};
   }
   return parameters;
 }
@@ -57,26 +57,26 @@ ordered_json localisationJson(const DiscoverFindings& f) {
                     {"state_regions", ordered_json::array()},
                     {f.wording.inputs, ordered_json::array()}};
   const auto& map = f.verdict.localisation;
-  for (const Score& one : map.times) {
-    if (!one.significant) continue;
-    json["time_spans"].push_back({{"trial", f.data.trialName(one.trial)},
-                                  {"from_s", one.from},
-                                  {"to_s", one.to},
-                                  {"score", orNull(one.z)}});
-    addAxis(f, one.axis, json["time_spans"].back());
+  for (const Score& score : map.times) {
+    if (!score.significant) continue;
+    json["time_spans"].push_back({{"trial", f.data.trialName(score.trial)},
+                                  {"from_s", score.from},
+                                  {"to_s", score.to},
+                                  {"score", orNull(score.z)}});
+    addAxis(f, score.axis, json["time_spans"].back());
   }
-  for (const Score& one : map.cells) {
-    if (!one.significant || !f.wording.hasMap) continue;
-    const double unit = f.wording.axes.at(one.axis).scale;
-    json["state_regions"].push_back({{"from", {unit * one.lowerQ, unit * one.lowerQDot}},
-                                     {"to", {unit * one.upperQ, unit * one.upperQDot}},
-                                     {"score", orNull(one.z)}});
-    addAxis(f, one.axis, json["state_regions"].back());
+  for (const Score& score : map.cells) {
+    if (!score.significant || !f.wording.hasMap) continue;
+    const double unit = f.wording.axes.at(score.axis).scale;
+    json["state_regions"].push_back({{"from", {unit * score.lowerQ, unit * score.lowerQDot}},
+                                     {"to", {unit * score.upperQ, unit * score.upperQDot}},
+                                     {"score", orNull(score.z)}});
+    addAxis(f, score.axis, json["state_regions"].back());
   }
-  for (const Score& one : map.inputs) {
+  for (const Score& score : map.inputs) {
     json[f.wording.inputs].push_back(
-        {{"name", one.input}, {"score", orNull(one.z)}, {"significant", one.significant}});
-    addAxis(f, one.axis, json[f.wording.inputs].back());
+        {{"name", score.input}, {"score", orNull(score.z)}, {"significant", score.significant}});
+    addAxis(f, score.axis, json[f.wording.inputs].back());
   }
   return json;
 }
@@ -104,15 +104,15 @@ void addSizes(const DiscoverFindings& f, ordered_json& effects) {
     effects[i]["share_of_muscle_moment"] = orNull(size.moment.share);
     effects[i]["motion_rms" + axis.end()] = orNull(axis.scale * size.motionRms);
     if (f.wording.axes.size() == 1 || size.moments.empty()) continue;
-    for (const ShownAxis& one : f.wording.axes) {
-      const bio::discover::EffectMoment& moment = size.moments.at(one.place);
+    for (const ShownAxis& axis : f.wording.axes) {
+      const bio::discover::EffectMoment& moment = size.moments.at(axis.place);
       effects[i]["moments"].push_back(
-          {{"coordinate", one.name},
+          {{"coordinate", axis.name},
            {"rms", orNull(moment.rms)},
            {"peak", orNull(moment.peak)},
            {"share_of_muscle_moment", orNull(moment.share)},
-           {"unit", one.forceUnit},
-           {"motion_rms" + one.end(), orNull(one.scale * moment.motionRms)}});
+           {"unit", axis.forceUnit},
+           {"motion_rms" + axis.end(), orNull(axis.scale * moment.motionRms)}});
     }
   }
 }
@@ -133,19 +133,20 @@ ordered_json trialsJson(const DiscoverFindings& f) {
   const double unit = f.wording.unit;
   const std::string& end = f.wording.gapEnd;
   ordered_json list = ordered_json::array();
-  for (const bio::discover::RepairedTrial& one : f.written->trials) {
-    const std::size_t i = one.index;
-    ordered_json json{{"file", f.trialFiles[i]}, {"role", one.isHeldOut ? "held_out" : "train"}};
+  for (const bio::discover::RepairedTrial& trial : f.written->trials) {
+    const std::size_t i = trial.index;
+    ordered_json json{{"file", f.trialFiles[i]}, {"role", trial.isHeldOut ? "held_out" : "train"}};
     json["replay_file"] =
         f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->replayFiles[i]);
-    json["rmse_nominal" + end] = orNull(unit * one.nominal);
-    json["rmse_after" + end] = orNull(unit * one.after);
-    json["noise_floor" + end] = orNull(unit * one.floor);
-    if (one.starts.size() == 1) {
-      json["start"] = startJson(f, one.starts.front());
+    json["rmse_nominal" + end] = orNull(unit * trial.nominal);
+    json["rmse_after" + end] = orNull(unit * trial.after);
+    json["noise_floor" + end] = orNull(unit * trial.floor);
+    if (trial.starts.size() == 1) {
+      json["start"] = startJson(f, trial.starts.front());
     } else {
       json["starts"] = ordered_json::array();
-      for (const bio::TrialStart& start : one.starts) json["starts"].push_back(startJson(f, start));
+      for (const bio::TrialStart& start : trial.starts)
+        json["starts"].push_back(startJson(f, start));
     }
     list.push_back(std::move(json));
   }
@@ -167,11 +168,11 @@ void addEffects(const DiscoverFindings& f, ordered_json& json) {
                                {"parameters", parametersJson(f, effect.estimates)},
                                {"log_bayes_factor", orNull(effect.logBayesFactor)},
                                {"probability", orNull(effect.probability)}});
-    for (const Estimate& one : effect.estimates) {
-      if (f.data.quantities()[one.quantity].name == candidate.id + ".time") {
+    for (const Estimate& estimate : effect.estimates) {
+      if (f.data.quantities()[estimate.quantity].name == candidate.id + ".time") {
         const char* change = candidate.id.ends_with("_until") ? "ends_at_s" : "starts_at_s";
         if (candidate.kind == info::discover::EffectKind::structure)
-          json["effects"].back()[change] = orNull(one.value);
+          json["effects"].back()[change] = orNull(estimate.value);
       }
     }
     for (const std::size_t c : effect.equals) json["class"].push_back(candidates[c].id);
@@ -214,25 +215,26 @@ ordered_json positionBreakJson(const DiscoverFindings& f) {
 }
 
 void addPlannedExperiments(const DiscoverFindings& f, ordered_json& json) {
-  for (const bio::discover::PredictedExperiment& one : f.predictedExperiments) {
+  for (const bio::discover::PredictedExperiment& experiment : f.predictedExperiments) {
     ordered_json nats = ordered_json::object();
-    for (std::size_t i = 0; i < one.nats.size(); ++i)
-      nats[rivalName(f.data, f.verdict, i + 1)] = orNull(one.nats[i]);
-    json["planned_experiments"].push_back(
-        {{"what", one.sentence}, {"of", rivalName(f.data, f.verdict, 0)}, {"expected_nats", nats}});
+    for (std::size_t i = 0; i < experiment.nats.size(); ++i)
+      nats[rivalName(f.data, f.verdict, i + 1)] = orNull(experiment.nats[i]);
+    json["planned_experiments"].push_back({{"what", experiment.sentence},
+                                           {"of", rivalName(f.data, f.verdict, 0)},
+                                           {"expected_nats", nats}});
   }
 }
 
 ordered_json evidenceJson(const DiscoverFindings& f) {
   const auto& candidates = f.data.candidates();
   ordered_json list = ordered_json::array();
-  for (const auto& one : f.verdict.finalists) {
+  for (const auto& finalist : f.verdict.finalists) {
     ordered_json ids = ordered_json::array();
-    for (const std::size_t e : one.effects) ids.push_back(candidates[e].id);
+    for (const std::size_t e : finalist.effects) ids.push_back(candidates[e].id);
     list.push_back({{"effects", ids},
-                    {"log_bayes_factor", orNull(one.logEvidence)},
-                    {"probability", orNull(one.probability)},
-                    {"amplitude_over_sd", orNull(one.significance)}});
+                    {"log_bayes_factor", orNull(finalist.logEvidence)},
+                    {"probability", orNull(finalist.probability)},
+                    {"amplitude_over_sd", orNull(finalist.significance)}});
   }
   return list;
 }
@@ -297,7 +299,7 @@ void tellNoise(const DiscoverFindings& f, Summary& summary) {
   if (end != "_deg" && end != "_m" && end != "_N") {
     summary.set("outputs", outputsJson(f));
   } else {
-    const double noise = f.wording.unit * f.verdict.outputSd.sd(0);
+    const double noise = f.wording.unit * f.verdict.sds.sd(0);
     summary.set("noise", noise);
     summary.set("noise" + end, noise);
   }
@@ -371,7 +373,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   }
   json["next_experiment"] = f.nextExperiment;
   addPlannedExperiments(f, json);
-  json["noise_sd"] = orNull(verdict.outputSd.sd(0));
+  json["noise_sd"] = orNull(verdict.sds.sd(0));
   if (f.written) json["outputs"] = outputsJson(f);
   json["samples"] = {{"recorded", verdict.noise.samples},
                      {"outliers", verdict.noise.outliers},

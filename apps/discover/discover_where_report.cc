@@ -26,13 +26,13 @@ Figure scoreOverTime(const DiscoverFindings& f, std::size_t axis) {
   Series marks{.name = "significant", .style = SeriesStyle::points};
   for (const int trial : map.trials) {
     Series series{.name = f.data.trialName(trial)};
-    for (const Score& one : map.times) {
-      if (one.trial != trial || one.axis != axis) continue;
-      series.x.push_back((one.from + one.to) / 2);
-      series.y.push_back(one.z);
-      if (one.significant) {
+    for (const Score& score : map.times) {
+      if (score.trial != trial || score.axis != axis) continue;
+      series.x.push_back((score.from + score.to) / 2);
+      series.y.push_back(score.z);
+      if (score.significant) {
         marks.x.push_back(series.x.back());
-        marks.y.push_back(one.z);
+        marks.y.push_back(score.z);
       }
     }
     figure.series.push_back(std::move(series));
@@ -44,15 +44,15 @@ Figure scoreOverTime(const DiscoverFindings& f, std::size_t axis) {
 /// A heat map over an axis's position and speed.
 std::string scoreMap(const DiscoverFindings& f, std::size_t axis) {
   std::vector<Score> scores;
-  for (const Score& one : f.verdict.localisation.cells)
-    if (one.axis == axis) scores.push_back(one);
+  for (const Score& score : f.verdict.localisation.cells)
+    if (score.axis == axis) scores.push_back(score);
   if (scores.empty()) return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 1 1\"/>";
   double lowQ = HUGE_VAL, highQ = -HUGE_VAL, lowV = HUGE_VAL, highV = -HUGE_VAL;
-  for (const Score& one : scores) {
-    lowQ = std::min(lowQ, one.lowerQ);
-    highQ = std::max(highQ, one.upperQ);
-    lowV = std::min(lowV, one.lowerQDot);
-    highV = std::max(highV, one.upperQDot);
+  for (const Score& score : scores) {
+    lowQ = std::min(lowQ, score.lowerQ);
+    highQ = std::max(highQ, score.upperQ);
+    lowV = std::min(lowV, score.lowerQDot);
+    highV = std::max(highV, score.upperQDot);
   }
   const ShownAxis& shown = f.wording.axes.at(axis);
   const double scale = shown.scale;
@@ -62,16 +62,17 @@ std::string scoreMap(const DiscoverFindings& f, std::size_t axis) {
   std::string svg =
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 920 360\" width=\"100%\" "
       "font-family=\"sans-serif\" font-size=\"14\">\n";
-  for (const Score& one : scores) {
-    const double strength = std::min(1.0, std::abs(one.z) / 6);
+  for (const Score& score : scores) {
+    const double strength = std::min(1.0, std::abs(score.z) / 6);
     svg += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\" "
         "fill-opacity=\"{:.2f}\" stroke=\"{}\" stroke-width=\"{}\"/>"
         "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{:.1f}</text>\n",
-        x(one.lowerQ) + 1, y(one.upperQDot) + 1, x(one.upperQ) - x(one.lowerQ) - 2,
-        y(one.lowerQDot) - y(one.upperQDot) - 2, one.z > 0 ? "#E69F00" : "#56B4E9", strength,
-        one.significant ? "#000" : "#ddd", one.significant ? 2.5 : 1,
-        (x(one.lowerQ) + x(one.upperQ)) / 2, (y(one.lowerQDot) + y(one.upperQDot)) / 2 + 5, one.z);
+        x(score.lowerQ) + 1, y(score.upperQDot) + 1, x(score.upperQ) - x(score.lowerQ) - 2,
+        y(score.lowerQDot) - y(score.upperQDot) - 2, score.z > 0 ? "#E69F00" : "#56B4E9", strength,
+        score.significant ? "#000" : "#ddd", score.significant ? 2.5 : 1,
+        (x(score.lowerQ) + x(score.upperQ)) / 2, (y(score.lowerQDot) + y(score.upperQDot)) / 2 + 5,
+        score.z);
   }
   for (int k = 0; k <= 4; ++k) {
     const double q = lowQ + k * (highQ - lowQ) / 4, v = lowV + k * (highV - lowV) / 4;
@@ -139,9 +140,9 @@ std::vector<ReportPart> whereTheyDisagree(const DiscoverFindings& f) {
   Table muscles{"Score by " + f.wording.input,
                 {f.wording.input, "score [standard deviations]", "significant"},
                 {}};
-  for (const Score& one : map.inputs) {
-    muscles.rows.push_back({one.input + f.wording.named(one.axis), numberText(one.z, 3),
-                            one.significant ? "yes" : "no"});
+  for (const Score& score : map.inputs) {
+    muscles.rows.push_back({score.input + f.wording.named(score.axis), numberText(score.z, 3),
+                            score.significant ? "yes" : "no"});
   }
   parts.emplace_back(std::move(muscles));
   return parts;

@@ -53,18 +53,19 @@ ExitStatus listEffects(const CommandContext& context, const std::string& file,
   chooseCoordinates(simulation, model, {});
   movableSystem(model, file, simulation, summary);  // warns and refuses as a search would
   const bio::discover::EncompassingModel encompassing = bio::discover::encompassingModel(
-      model, armOptions(simulation), coordinatesInQuestion(simulation, {}));
+      model, systemOptions(simulation), coordinatesInQuestion(simulation, {}));
   if (context.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const Candidate& one : encompassing.candidates())
-      list.push_back(effectJson(encompassing, one));
+    for (const Candidate& candidate : encompassing.candidates())
+      list.push_back(effectJson(encompassing, candidate));
     std::cout << jsonText(list, 2) << '\n';
     return ExitStatus::done;
   }
   std::string text;
-  for (const Candidate& one : encompassing.candidates()) {
-    text += fmt::format("{:<22} {:<52} {:<10} {}\n", one.id, one.name,
-                        info::discover::name(one.kind), parameterList(encompassing, one));
+  for (const Candidate& candidate : encompassing.candidates()) {
+    text +=
+        fmt::format("{:<22} {:<52} {:<10} {}\n", candidate.id, candidate.name,
+                    info::discover::name(candidate.kind), parameterList(encompassing, candidate));
   }
   for (const auto& [id, what] : encompassing.present()) {
     text += fmt::format("{:<22} the model has it already: {}\n", id, what);

@@ -24,7 +24,7 @@ namespace {
 
 ShownOutput shownOf(const bio::Observable& what, const bio::Model& model) {
   const std::string unit = bio::unitOf(what, model);
-  if (unit == "rad") return {bio::nameOf(what), "deg", radian};
+  if (unit == "rad") return {bio::nameOf(what), "deg", degreesPerRadian};
   return {bio::nameOf(what), unit, 1};
 }
 
@@ -45,13 +45,13 @@ DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data,
   for (const bio::discover::MovingCoordinate& at : model.coordinates()) {
     wording.axes.push_back(
         at.coordinate.isRotation
-            ? ShownAxis{at.coordinate.name, "deg", radian, "angle", "Torque [N·m]", "N·m"}
+            ? ShownAxis{at.coordinate.name, "deg", degreesPerRadian, "angle", "Torque [N·m]", "N·m"}
             : ShownAxis{at.coordinate.name, "m", 1, "position", "Force [N]", "N"});
     wording.axes.back().place = static_cast<std::size_t>(at.index);
   }
   const ShownOutput& first = wording.outputs.front();
   const bool isOne = wording.outputs.size() == 1;
-  wording.unit = isOne ? first.scale : 1 / verdict.outputSd.sd(0);
+  wording.unit = isOne ? first.scale : 1 / verdict.sds.sd(0);
   wording.gapUnit = isOne ? first.unit : "sd";
   wording.gapEnd = isOne ? endOf(first.unit) : "_sd";
   wording.ofForce = "fraction of the muscles' moments";
@@ -163,18 +163,19 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
   inputsMustDiffer(summary, request.trials.size());
   resultsMustNotBeInputs(summary, folder, names);
   const std::vector<std::string> coordinates = coordinatesInQuestion(request.simulation, trials);
-  const bio::SystemOptions arm = armOptions(request.simulation);
-  const bio::MusculoskeletalSystem compiled(model, arm);
+  const bio::SystemOptions system = systemOptions(request.simulation);
+  const bio::MusculoskeletalSystem compiled(model, system);
   for (const std::string& warning : compiled.warnings()) summary.warn(warning);
   bio::discover::DiscoveryRequest asked{
-      model, arm, coordinates, trials, request.heldOut.size(), request.simulation.step, {}, {}, {}};
+      model, system, coordinates, trials, request.heldOut.size(), request.simulation.step,
+      {},    {},     {}};
   asked.problem.simulation = simulationOptions(request.simulation, 0, 1);
   asked.problem.without = request.without;
   asked.search = engineOptions(request.maxEffects, request.inputScatter);
-  asked.problem.sensors = bio::discover::measuredOutputs(trials, arm, coordinates);
+  asked.problem.sensors = bio::discover::measuredOutputs(trials, system, coordinates);
   std::vector<ShownOutput> outputs;
   for (const bio::Observable& what : asked.problem.sensors) outputs.push_back(shownOf(what, model));
-  asked.search.outputSd = noiseOf(request, outputs);
+  asked.search.sds = noiseOf(request, outputs);
   asked.provenance = provenanceOf(summary);
   WatchedSearch watch(context.quiet);
   asked.search.progress = watch.progress();

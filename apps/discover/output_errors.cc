@@ -41,7 +41,7 @@ ordered_json outputsJson(const DiscoverFindings& f) {
     const ShownOutput& output = f.wording.outputs[o];
     ordered_json json{{"name", output.name},
                       {"unit", output.unit},
-                      {"noise_sd", orNull(output.scale * f.verdict.outputSd.sd(o))}};
+                      {"noise_sd", orNull(output.scale * f.verdict.sds.sd(o))}};
     if (hasErrors) json["rmse_after"] = orNull(errors[static_cast<Eigen::Index>(o)]);
     list.push_back(std::move(json));
   }

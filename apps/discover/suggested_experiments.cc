@@ -64,10 +64,10 @@ std::string followUp(const info::discover::DiscoveryProblem& data,
     if (effect.equals.size() < 2) continue;
     const Intervention* best = nullptr;
     long most = 1;
-    for (const Intervention& one : known.interventions) {
+    for (const Intervention& intervention : known.interventions) {
       const long touched =
           std::count_if(effect.equals.begin(), effect.equals.end(), [&](std::size_t c) {
-            return std::any_of(one.separates.begin(), one.separates.end(),
+            return std::any_of(intervention.separates.begin(), intervention.separates.end(),
                                [&](const std::string& id) {
                                  return candidates[c].id.starts_with(id) ||
                                         withoutOwner(candidates[c].id).starts_with(id);
@@ -75,7 +75,7 @@ std::string followUp(const info::discover::DiscoveryProblem& data,
           });
       if (touched > most) {
         most = touched;
-        best = &one;
+        best = &intervention;
       }
     }
     return best ? best->sentence : known.otherwise;

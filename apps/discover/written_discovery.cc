@@ -60,14 +60,16 @@ class DiscoveryWriter {
   void writeModels(bio::discover::Repaired& repaired) {
     bio::Model& model = repaired.added.model;
     std::size_t training = 0, heldOut = 0;
-    for (const RepairedTrial& one : repaired.trials) {
-      const std::size_t number = one.isHeldOut ? ++heldOut : ++training;
-      if (one.driven) written_.replayFiles[one.index] = writeDriven(one, number, model, folder_);
+    for (const RepairedTrial& trial : repaired.trials) {
+      const std::size_t number = trial.isHeldOut ? ++heldOut : ++training;
+      if (trial.driven)
+        written_.replayFiles[trial.index] = writeDriven(trial, number, model, folder_);
     }
     written_.model = result_.addsEffect ? "with_effect.osim" : "refitted.osim";
     writeOsim(written_.model, model);
     if (result_.effectOnly) writeOsim("effect_only.osim", result_.effectOnly->model);
-    for (const RepairedTrial& one : repaired.trials) compareWithFit(one, repaired.added.sensors);
+    for (const RepairedTrial& trial : repaired.trials)
+      compareWithFit(trial, repaired.added.sensors);
   }
 
   void writeOsim(const std::string& name, const bio::Model& model) {
@@ -77,30 +79,31 @@ class DiscoveryWriter {
   }
 
   /// A corrected recording has other degrees, and may have fewer samples.
-  void compareWithFit(const RepairedTrial& one, const std::vector<bio::discover::SensorLaw>& laws) {
+  void compareWithFit(const RepairedTrial& trial,
+                      const std::vector<bio::discover::SensorLaw>& laws) {
     for (bio::discover::SensorLaw law : laws) {
       law.bias = 0;
       if (!law.isTrue()) return;
     }
-    if (std::isnan(one.after)) return;
+    if (std::isnan(trial.after)) return;
     const double unit = wording_.unit;
     const double tolerance = wording_.gapEnd == "_deg" ? 0.01
                              : wording_.gapEnd == "_m" ? 1e-5
-                                                       : 0.02 * unit * one.floor;
-    if (unit * std::abs(one.after - one.fitted) <= tolerance) return;
+                                                       : 0.02 * unit * trial.floor;
+    if (unit * std::abs(trial.after - trial.fitted) <= tolerance) return;
     summary_.warn(fmt::format(
         "{}: the written model replays with an RMS error of {}, the search itself had {}; the "
         "report gives the value of the replay",
-        files_[one.index], withUnit(unit * one.after, wording_.gapUnit),
-        withUnit(unit * one.fitted, wording_.gapUnit)));
+        files_[trial.index], withUnit(unit * trial.after, wording_.gapUnit),
+        withUnit(unit * trial.fitted, wording_.gapUnit)));
   }
 
   void tellCommands() {
     const SimulationOptions& typed = request_.simulation;
     written_.commands.emplace_back("this report", summary_.commandLine());
-    for (const RepairedTrial& one : written_.trials) {
-      const std::string& file = files_[one.index];
-      const std::string& replayed = written_.replayFiles[one.index];
+    for (const RepairedTrial& trial : written_.trials) {
+      const std::string& file = files_[trial.index];
+      const std::string& replayed = written_.replayFiles[trial.index];
       if (!written_.trialsAreCut)
         written_.commands.emplace_back(
             file + ", original model",

@@ -133,7 +133,7 @@ class Emg : public Command {
     });
     summary.set("conversions", config.conversions);
     if (!context.json && !context.quiet) {
-      for (const std::string& one : config.conversions) fmt::print("Unit: {}\n", one);
+      for (const std::string& conversion : config.conversions) fmt::print("Unit: {}\n", conversion);
     }
     tell(joined, result, summary);
     tellUnrecorded(config, summary);
@@ -171,11 +171,11 @@ class Emg : public Command {
   static void tellUnrecorded(const bio::EmgConfig& config, Summary& summary) {
     if (config.unrecorded.empty()) return;
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const bio::UnrecordedMuscle& one : config.unrecorded) {
-      nlohmann::ordered_json json = {{"muscle", one.muscle}, {"excitation", sourceOf(one)}};
-      if (one.latent) {
-        json["latent_sd"] = one.latent->sd;
-        json["knots_s"] = one.latent->spacing;
+    for (const bio::UnrecordedMuscle& muscle : config.unrecorded) {
+      nlohmann::ordered_json json = {{"muscle", muscle.muscle}, {"excitation", sourceOf(muscle)}};
+      if (muscle.latent) {
+        json["latent_sd"] = muscle.latent->sd;
+        json["knots_s"] = muscle.latent->spacing;
       }
       list.push_back(json);
     }

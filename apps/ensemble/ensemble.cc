@@ -29,11 +29,11 @@ using Json = nlohmann::ordered_json;
 
 /// Inputs of the rows beside their numbers, and how they are written.
 struct EnsembleStudy {
-  EnsembleStudy(const bio::Model& model, const bio::MusculoskeletalSystem& arm,
+  EnsembleStudy(const bio::Model& model, const bio::MusculoskeletalSystem& system,
                 const bio::SystemOptions& built, const TrialInput& input,
                 const bio::TrialEnsembleOptions& options)
       : duration(input.trial.duration()),
-        ensemble(model, arm, built, input.trial, {input.start.q, input.start.qDot}, options),
+        ensemble(model, system, built, input.trial, {input.start.q, input.start.qDot}, options),
         table(ensemble.laws().parameters, ensemble.course(), shownFactor(ensemble.coordinate()),
               shownUnit(ensemble.coordinate())) {}
 
@@ -221,8 +221,8 @@ class Ensemble : public Command {
     const bio::Model model = readModel(model_, summary);
     chooseCoordinates(simulation_, model, {trial_});
     requireFreeCoordinate(simulation_);
-    const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
-    const TrialInput input = readTrialInput(trial_, model, arm, simulation_, summary);
+    const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
+    const TrialInput input = readTrialInput(trial_, model, system, simulation_, summary);
     bio::TrialEnsembleOptions options{.laws = lawRequest(laws_),
                                       .draws = draws_,
                                       .sobol = sobol_,
@@ -230,8 +230,8 @@ class Ensemble : public Command {
                                       .bandPoints = bandPoints_};
     options.simulation = input.recorded.simulation;
     if (options.laws.covariance) summary.addInput(laws_.covarianceFile);
-    auto made =
-        std::make_unique<const EnsembleStudy>(model, arm, armOptions(simulation_), input, options);
+    auto made = std::make_unique<const EnsembleStudy>(model, system, systemOptions(simulation_),
+                                                      input, options);
     if (const std::string& remark = made->ensemble.nominalRemark(); !remark.empty()) {
       summary.warn(remark);
     }
@@ -286,9 +286,9 @@ class Ensemble : public Command {
     json["simulation"] = settingsOf(simulation_);
     if (study.ensemble.laws().together) json["covariance_sha256"] = summary.inputs()[2].sha256;
     json["parameters"] = Json::array();
-    for (const bio::DrawnParameter& one : study.ensemble.laws().parameters) {
-      json["parameters"].push_back(
-          {one.name, one.law.mean, one.law.sd, one.law.lower, one.law.upper});
+    for (const bio::DrawnParameter& parameter : study.ensemble.laws().parameters) {
+      json["parameters"].push_back({parameter.name, parameter.law.mean, parameter.law.sd,
+                                    parameter.law.lower, parameter.law.upper});
     }
     return json;
   }

@@ -29,8 +29,10 @@ std::vector<std::string> DrawTable::outputNames() {
 DrawTable::DrawTable(const std::vector<bio::DrawnParameter>& parameters,
                      const std::vector<double>& course, double shown, const std::string& shownUnit)
     : course_(course), shown_(shown), unit_(shownUnit) {
-  for (const bio::DrawnParameter& one : parameters) {
-    parameters_.push_back(one.unit.empty() ? one.name : fmt::format("{} [{}]", one.name, one.unit));
+  for (const bio::DrawnParameter& parameter : parameters) {
+    parameters_.push_back(parameter.unit.empty()
+                              ? parameter.name
+                              : fmt::format("{} [{}]", parameter.name, parameter.unit));
   }
 }
 

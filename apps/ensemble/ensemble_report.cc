@@ -85,10 +85,11 @@ Table parameterTable(const EnsembleFindings& f) {
   Table table{
       .title = "Distributions of the parameters",
       .columns = {"parameter", "unit", "model value", "mean", "standard deviation", "from", "to"}};
-  for (const bio::DrawnParameter& one : f.parameters) {
-    table.rows.push_back({one.name, one.unit.empty() ? "1" : one.unit, numberText(one.value),
-                          numberText(one.law.mean), numberText(one.law.sd),
-                          numberText(one.law.quantile(0)), numberText(one.law.quantile(1))});
+  for (const bio::DrawnParameter& parameter : f.parameters) {
+    table.rows.push_back({parameter.name, parameter.unit.empty() ? "1" : parameter.unit,
+                          numberText(parameter.value), numberText(parameter.law.mean),
+                          numberText(parameter.law.sd), numberText(parameter.law.quantile(0)),
+                          numberText(parameter.law.quantile(1))});
   }
   return table;
 }
@@ -185,13 +186,13 @@ void tellEnsemble(const EnsembleFindings& f, Summary& summary) {
   for (const auto& [outcome, count] : f.outcomes) ended[outcome] = count;
   summary.set("outcomes", ended);
   nlohmann::ordered_json laws = nlohmann::ordered_json::array();
-  for (const bio::DrawnParameter& one : f.parameters) {
-    laws.push_back({{"name", one.name},
-                    {"unit", one.unit},
-                    {"mean", one.law.mean},
-                    {"sd", one.law.sd},
-                    {"from", one.law.quantile(0)},
-                    {"to", one.law.quantile(1)}});
+  for (const bio::DrawnParameter& parameter : f.parameters) {
+    laws.push_back({{"name", parameter.name},
+                    {"unit", parameter.unit},
+                    {"mean", parameter.law.mean},
+                    {"sd", parameter.law.sd},
+                    {"from", parameter.law.quantile(0)},
+                    {"to", parameter.law.quantile(1)}});
   }
   summary.set("parameters", laws);
   for (std::size_t i = 0; i < bio::ensembleOutputs().size(); ++i) {

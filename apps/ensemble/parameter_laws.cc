@@ -8,11 +8,11 @@ namespace app {
 bio::LawRequest lawRequest(const TypedLaws& typed) {
   bio::LawRequest request{.names = typed.names, .spread = typed.spread, .optionPrefix = "--"};
   if (typed.distribution != "normal") request.shape = info::Marginal::Shape::even;
-  for (const NamedPair& one : parsePairs(typed.priors, "--prior")) {
-    request.priors[one.name] = {one.first, one.second};
+  for (const NamedPair& pair : parsePairs(typed.priors, "--prior")) {
+    request.priors[pair.name] = {pair.first, pair.second};
   }
-  for (const NamedPair& one : parsePairs(typed.bounds, "--bounds")) {
-    request.bounds[one.name] = {one.first, one.second};
+  for (const NamedPair& pair : parsePairs(typed.bounds, "--bounds")) {
+    request.bounds[pair.name] = {pair.first, pair.second};
   }
   if (typed.covarianceFile.empty()) return request;
   request.covariance = readCovariance(typed.covarianceFile);

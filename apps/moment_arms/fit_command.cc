@@ -23,17 +23,17 @@ const bio::MultivariatePolynomial& polynomialOf(const bio::PathFit& fit) {
   return std::get<bio::MultivariatePolynomial>(fit.function.length);
 }
 
-nlohmann::ordered_json asJson(const bio::MuscleFit& one) {
-  nlohmann::ordered_json json{{"written", one.whyNot.empty()}};
-  if (!one.whyNot.empty()) json["why_not"] = one.whyNot;
-  if (!one.fit) return json;
-  json["coordinates"] = one.fit->function.coordinates;
-  json["order"] = polynomialOf(*one.fit).order;
-  json["terms"] = polynomialOf(*one.fit).coefficients.size();
-  json["postures"] = one.fit->postures;
-  json["length_error_m"] = {{"rms", one.fit->length.rms}, {"largest", one.fit->length.largest}};
-  if (std::isfinite(one.fit->arm.rms)) {
-    json["arm_error_m"] = {{"rms", one.fit->arm.rms}, {"largest", one.fit->arm.largest}};
+nlohmann::ordered_json asJson(const bio::MuscleFit& fit) {
+  nlohmann::ordered_json json{{"written", fit.whyNot.empty()}};
+  if (!fit.whyNot.empty()) json["why_not"] = fit.whyNot;
+  if (!fit.fit) return json;
+  json["coordinates"] = fit.fit->function.coordinates;
+  json["order"] = polynomialOf(*fit.fit).order;
+  json["terms"] = polynomialOf(*fit.fit).coefficients.size();
+  json["postures"] = fit.fit->postures;
+  json["length_error_m"] = {{"rms", fit.fit->length.rms}, {"largest", fit.fit->length.largest}};
+  if (std::isfinite(fit.fit->system.rms)) {
+    json["arm_error_m"] = {{"rms", fit.fit->system.rms}, {"largest", fit.fit->system.largest}};
   }
   return json;
 }
@@ -41,17 +41,17 @@ nlohmann::ordered_json asJson(const bio::MuscleFit& one) {
 void writeFits(const std::vector<bio::MuscleFit>& fits, std::ostream& out) {
   out << "muscle,written,coordinates,order,terms,length_rms_mm,length_largest_mm,arm_rms_mm,"
          "arm_largest_mm\n";
-  for (const bio::MuscleFit& one : fits) {
-    out << one.muscle << ',' << (one.whyNot.empty() ? 1 : 0);
-    if (!one.fit) {
+  for (const bio::MuscleFit& fit : fits) {
+    out << fit.muscle << ',' << (fit.whyNot.empty() ? 1 : 0);
+    if (!fit.fit) {
       out << ",,,,,,,\n";
       continue;
     }
-    const bio::MultivariatePolynomial& polynomial = polynomialOf(*one.fit);
-    out << ',' << fmt::format("{}", fmt::join(one.fit->function.coordinates, "|")) << ','
+    const bio::MultivariatePolynomial& polynomial = polynomialOf(*fit.fit);
+    out << ',' << fmt::format("{}", fmt::join(fit.fit->function.coordinates, "|")) << ','
         << polynomial.order << ',' << polynomial.coefficients.size();
-    for (const double error :
-         {one.fit->length.rms, one.fit->length.largest, one.fit->arm.rms, one.fit->arm.largest}) {
+    for (const double error : {fit.fit->length.rms, fit.fit->length.largest, fit.fit->system.rms,
+                               fit.fit->system.largest}) {
       out << ',' << cellText(1000 * error);
     }
     out << '\n';
@@ -68,22 +68,22 @@ Report reportOnFit(const std::string& file, const std::vector<bio::MuscleFit>& f
               {"muscle", "order", "coordinates", "length: RMS, largest error [mm]",
                "moment arm: RMS, largest error [mm]", "written"},
               {}};
-  for (const bio::MuscleFit& one : fits) {
-    if (one.whyNot.empty()) {
+  for (const bio::MuscleFit& fit : fits) {
+    if (fit.whyNot.empty()) {
       ++written;
-      largest = std::max(largest, one.fit->length.largest);
+      largest = std::max(largest, fit.fit->length.largest);
     }
-    const std::string answer = one.whyNot.empty() ? "yes" : "no: " + one.whyNot;
-    if (!one.fit) {
-      table.rows.push_back({one.muscle, "–", "–", "–", "–", answer});
+    const std::string answer = fit.whyNot.empty() ? "yes" : "no: " + fit.whyNot;
+    if (!fit.fit) {
+      table.rows.push_back({fit.muscle, "–", "–", "–", "–", answer});
       continue;
     }
     const auto pair = [](const bio::FitError& error) {
       return numberText(1000 * error.rms, 3) + ", " + numberText(1000 * error.largest, 3);
     };
-    table.rows.push_back({one.muscle, std::to_string(polynomialOf(*one.fit).order),
-                          fmt::format("{}", fmt::join(one.fit->function.coordinates, ", ")),
-                          pair(one.fit->length), pair(one.fit->arm), answer});
+    table.rows.push_back({fit.muscle, std::to_string(polynomialOf(*fit.fit).order),
+                          fmt::format("{}", fmt::join(fit.fit->function.coordinates, ", ")),
+                          pair(fit.fit->length), pair(fit.fit->system), answer});
   }
   report.verdict = fmt::format("{} of {} paths are written as polynomials", written, fits.size());
   if (written > 0) {
@@ -141,7 +141,7 @@ ExitStatus runFit(const CommandContext& context, Summary& summary, const std::st
   std::vector<bio::MuscleFit> fits;
   if (request.table.empty()) {
     chooseCoordinates(options, model, {});
-    const bio::SkeletonOptions skeleton = armOptions(options).skeleton;
+    const bio::SkeletonOptions skeleton = systemOptions(options).skeleton;
     for (const std::string& remark : lockRemarks(model, skeleton)) summary.warn(remark);
     fits = bio::fitPaths(model, skeleton, options.wrapAsCylinder, request.muscles, fitOptions);
   } else {
@@ -152,7 +152,7 @@ ExitStatus runFit(const CommandContext& context, Summary& summary, const std::st
     summary.addInput(request.table);
     const bio::LengthTable table = bio::readLengths(request.table, model);
     options.coordinates = table.postures.coordinates;
-    fits = bio::fitPathsToTable(model, armOptions(options).skeleton, table, request.muscles,
+    fits = bio::fitPathsToTable(model, systemOptions(options).skeleton, table, request.muscles,
                                 fitOptions);
   }
   if (fits.empty()) {
@@ -161,9 +161,9 @@ ExitStatus runFit(const CommandContext& context, Summary& summary, const std::st
   }
   const auto written =
       std::count_if(fits.begin(), fits.end(), [](const auto& fit) { return fit.whyNot.empty(); });
-  for (const bio::MuscleFit& one : fits) {
-    if (!one.whyNot.empty()) {
-      summary.warn(fmt::format("muscle '{}' keeps its points: {}", one.muscle, one.whyNot));
+  for (const bio::MuscleFit& fit : fits) {
+    if (!fit.whyNot.empty()) {
+      summary.warn(fmt::format("muscle '{}' keeps its points: {}", fit.muscle, fit.whyNot));
     }
   }
   folder.writeFile("fitted_paths.osim", [&](const std::filesystem::path& path) {
@@ -175,9 +175,9 @@ ExitStatus runFit(const CommandContext& context, Summary& summary, const std::st
   summary.set("written", written);
   nlohmann::ordered_json all = nlohmann::ordered_json::object();
   std::vector<std::string> muscles;
-  for (const bio::MuscleFit& one : fits) {
-    muscles.push_back(one.muscle);
-    all[one.muscle] = asJson(one);
+  for (const bio::MuscleFit& fit : fits) {
+    muscles.push_back(fit.muscle);
+    all[fit.muscle] = asJson(fit);
   }
   summary.set("muscles", muscles);
   summary.set("notes", nlohmann::ordered_json::array());

@@ -59,11 +59,11 @@ class MomentArms : public Command {
     const bio::Model model = readModel(model_, summary);
     if (!postures_.empty()) return runPostures(context, folder, summary, model);
     chooseCoordinates(model_options_, model, {});
-    const bio::SkeletonOptions options = armOptions(model_options_).skeleton;
+    const bio::SkeletonOptions options = systemOptions(model_options_).skeleton;
     const bio::Skeleton skeleton(model, options);
     for (const std::string& remark : lockRemarks(model, options)) summary.warn(remark);
     const bio::Coordinate& coordinate = skeleton.coordinates().front();
-    const double unit = coordinate.isRotation ? degree : 1e-3;
+    const double unit = coordinate.isRotation ? radiansPerDegree : 1e-3;
     const double first = from_ ? *from_ : coordinate.rangeMin / unit;
     const double last = to_ ? *to_ : coordinate.rangeMax / unit;
     require(points_ >= 2 && points_ <= 1000000,
@@ -79,7 +79,7 @@ class MomentArms : public Command {
     for (const bio::LengthJump& jump : jumps) summary.warn(describe(jump));
     const auto differences =
         bio::openSimDifferences(model, skeleton, asCylinder, first * unit, last * unit);
-    for (const bio::OpenSimDifference& one : differences) summary.warn(describe(one));
+    for (const bio::OpenSimDifference& difference : differences) summary.warn(describe(difference));
     require(!sample.muscles.empty(),
             fmt::format("{}: coordinate '{}' changes the length of no muscle", model_,
                         coordinate.name));
@@ -126,7 +126,7 @@ class MomentArms : public Command {
                       postures_, postures.ignored.size(), postures.ignored.front()));
     }
     model_options_.coordinates = postures.coordinates;
-    const bio::SkeletonOptions options = armOptions(model_options_).skeleton;
+    const bio::SkeletonOptions options = systemOptions(model_options_).skeleton;
     for (const std::string& remark : lockRemarks(model, options)) summary.warn(remark);
     const bio::PathPostures paths =
         bio::pathsAt(model, postures, options.lockedValues, model_options_.wrapAsCylinder);
@@ -220,9 +220,10 @@ class MomentArms : public Command {
     const std::vector<double> x(shown.begin(), shown.end());
     for (std::size_t i = 0; i < sample.muscles.size(); ++i) {
       const auto c = static_cast<Eigen::Index>(i);
-      const Eigen::VectorXd arm = sample.momentArm.col(c) * 1e3;
+      const Eigen::VectorXd system = sample.momentArm.col(c) * 1e3;
       const Eigen::VectorXd length = sample.length.col(c) * 1e3;
-      arms.series.push_back({.name = sample.muscles[i], .x = x, .y = {arm.begin(), arm.end()}});
+      arms.series.push_back(
+          {.name = sample.muscles[i], .x = x, .y = {system.begin(), system.end()}});
       lengths.series.push_back(
           {.name = sample.muscles[i], .x = x, .y = {length.begin(), length.end()}});
     }

@@ -11,7 +11,7 @@ namespace {
 
 /// [deg] or [mm]
 double shownValue(double value, bool turns) {
-  return turns ? value / degree : 1000 * value;
+  return turns ? value / radiansPerDegree : 1000 * value;
 }
 
 std::string unitOf(bool turns) {
@@ -51,22 +51,22 @@ Table jumpTable(const std::vector<bio::LengthJump>& jumps) {
 
 nlohmann::ordered_json differencesAsJson(const std::vector<bio::OpenSimDifference>& differences) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
-  for (const bio::OpenSimDifference& one : differences) {
-    const auto at = [&](double value) { return shownValue(value, one.turns); };
-    const std::string unit = unitOf(one.turns);
+  for (const bio::OpenSimDifference& difference : differences) {
+    const auto at = [&](double value) { return shownValue(value, difference.turns); };
+    const std::string unit = unitOf(difference.turns);
     nlohmann::ordered_json apart = nlohmann::ordered_json::array();
-    for (const auto& range : one.apart) apart.push_back({at(range.from), at(range.to)});
+    for (const auto& range : difference.apart) apart.push_back({at(range.from), at(range.to)});
     nlohmann::ordered_json jumps = nlohmann::ordered_json::array();
-    for (const auto& jump : one.jumps) {
+    for (const auto& jump : difference.jumps) {
       jumps.push_back({{"at_" + unit, at(jump.at)}, {"length_mm", 1000 * jump.size}});
     }
-    all.push_back({{"muscle", one.muscle},
-                   {"coordinate", one.coordinate},
-                   {"ellipsoids", one.ellipsoids},
-                   {"length_mm", 1000 * one.length},
-                   {"length_at_" + unit, at(one.lengthAt)},
-                   {"moment_arm_mm", 1000 * one.arm},
-                   {"moment_arm_at_" + unit, at(one.armAt)},
+    all.push_back({{"muscle", difference.muscle},
+                   {"coordinate", difference.coordinate},
+                   {"ellipsoids", difference.ellipsoids},
+                   {"length_mm", 1000 * difference.length},
+                   {"length_at_" + unit, at(difference.lengthAt)},
+                   {"moment_arm_mm", 1000 * difference.system},
+                   {"moment_arm_at_" + unit, at(difference.systemAt)},
                    {"apart_" + unit, apart},
                    {"opensim_jumps", jumps}});
   }
@@ -79,23 +79,26 @@ Table differenceTable(const std::vector<bio::OpenSimDifference>& differences) {
                fmt::format("{} mm or more at", numberText(1000 * bio::leastOpenSimDifference)),
                "jumps of OpenSim's length [mm]"},
               {}};
-  for (const bio::OpenSimDifference& one : differences) {
-    const std::string unit = unitOf(one.turns);
-    const auto at = [&](double value) { return numberText(shownValue(value, one.turns), 3); };
+  for (const bio::OpenSimDifference& difference : differences) {
+    const std::string unit = unitOf(difference.turns);
+    const auto at = [&](double value) {
+      return numberText(shownValue(value, difference.turns), 3);
+    };
     const auto largest = [&](double size, double where) {
       return fmt::format("{} at {} {}", inMillimetres(size), at(where), unit);
     };
     std::vector<std::string> apart, jumps;
-    for (const auto& range : one.apart) {
+    for (const auto& range : difference.apart) {
       apart.push_back(range.from < range.to
                           ? fmt::format("{} to {} {}", at(range.from), at(range.to), unit)
                           : fmt::format("{} {}", at(range.from), unit));
     }
-    for (const auto& jump : one.jumps) jumps.push_back(largest(jump.size, jump.at));
-    table.rows.push_back({one.muscle, fmt::format("{}", fmt::join(one.ellipsoids, ", ")),
-                          largest(one.length, one.lengthAt), largest(one.arm, one.armAt),
-                          fmt::format("{}", fmt::join(apart, ", ")),
-                          jumps.empty() ? "–" : fmt::format("{}", fmt::join(jumps, ", "))});
+    for (const auto& jump : difference.jumps) jumps.push_back(largest(jump.size, jump.at));
+    table.rows.push_back(
+        {difference.muscle, fmt::format("{}", fmt::join(difference.ellipsoids, ", ")),
+         largest(difference.length, difference.lengthAt),
+         largest(difference.system, difference.systemAt), fmt::format("{}", fmt::join(apart, ", ")),
+         jumps.empty() ? "–" : fmt::format("{}", fmt::join(jumps, ", "))});
   }
   return table;
 }

@@ -37,17 +37,17 @@ class MuscleStates : public Command {
     const std::vector<bio::MuscleState> states = bio::muscleStates(file_);
     folder.write("muscle_states.csv", [&](std::ostream& out) {
       out << "class,fiber_velocity,tendon_force,static_fiber_length,static_tendon_force\n";
-      for (const bio::MuscleState& one : states) {
-        out << one.className << ',' << cellText(one.fibreVelocity) << ','
-            << cellText(one.tendonForce) << ',' << cellText(one.staticFibreLength) << ','
-            << cellText(one.staticTendonForce) << '\n';
+      for (const bio::MuscleState& state : states) {
+        out << state.className << ',' << cellText(state.fibreVelocity) << ','
+            << cellText(state.tendonForce) << ',' << cellText(state.staticFibreLength) << ','
+            << cellText(state.staticTendonForce) << '\n';
       }
     });
     nlohmann::ordered_json classes = nlohmann::ordered_json::object();
     std::size_t without = 0;
-    for (const bio::MuscleState& one : states) {
-      classes[one.className] = classes.value(one.className, 0) + 1;
-      if (!std::isfinite(one.staticFibreLength)) ++without;
+    for (const bio::MuscleState& state : states) {
+      classes[state.className] = classes.value(state.className, 0) + 1;
+      if (!std::isfinite(state.staticFibreLength)) ++without;
     }
     summary.set("states", states.size());
     summary.set("states_by_class", classes);

@@ -9,20 +9,20 @@ namespace app {
 
 std::vector<bio::ChannelCandidate> readObserved(const std::vector<std::string>& typed,
                                                 const bio::Model& model,
-                                                const bio::MusculoskeletalSystem& arm) {
+                                                const bio::MusculoskeletalSystem& system) {
   std::vector<std::pair<std::string, double>> named;
   for (const std::string& text : typed) {
-    const Assignment one = parseAssignment(text);
-    named.emplace_back(one.name, one.value);
+    const Assignment assignment = parseAssignment(text);
+    named.emplace_back(assignment.name, assignment.value);
   }
-  return bio::observedChannels(named, model, arm);
+  return bio::observedChannels(named, model, system);
 }
 
 std::string inWords(const std::vector<bio::ChannelCandidate>& channels, const bio::Model& model) {
   std::string text;
-  for (const bio::ChannelCandidate& one : channels) {
-    text += fmt::format("{}{} (noise {} {})", text.empty() ? "" : ", ", nameOf(one.what),
-                        numberText(one.sd), bio::unitOf(one.what, model));
+  for (const bio::ChannelCandidate& candidate : channels) {
+    text += fmt::format("{}{} (noise {} {})", text.empty() ? "" : ", ", nameOf(candidate.what),
+                        numberText(candidate.sd), bio::unitOf(candidate.what, model));
   }
   return text;
 }

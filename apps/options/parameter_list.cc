@@ -14,8 +14,8 @@ void addListParameters(CLI::App& options, bool& list) {
 }
 
 ExitStatus listParameters(const CommandContext& context, const bio::Model& model,
-                          const bio::MusculoskeletalSystem& arm) {
-  const bio::ParameterCatalogue catalogue(model, arm, {arm.skeleton().defaultValues(), {}});
+                          const bio::MusculoskeletalSystem& system) {
+  const bio::ParameterCatalogue catalogue(model, system, {system.skeleton().defaultValues(), {}});
   if (context.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const bio::ModelParameter& p : catalogue.parameters()) {

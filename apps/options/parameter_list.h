@@ -13,6 +13,6 @@ void addListParameters(CLI::App& options, bool& list);
 /// Prints every parameter of the model, its name, value, unit and meaning; with --json also its
 /// bounds.
 ExitStatus listParameters(const CommandContext& context, const bio::Model& model,
-                          const bio::MusculoskeletalSystem& arm);
+                          const bio::MusculoskeletalSystem& system);
 
 }  // namespace app

@@ -39,7 +39,7 @@ double SimulationOptions::stepOrDefault() const {
 nlohmann::ordered_json settingsOf(const SimulationOptions& options) {
   const auto listed = [](const std::vector<Assignment>& assignments) {
     nlohmann::ordered_json list = nlohmann::ordered_json::object();
-    for (const Assignment& one : assignments) list[one.name] = one.value;
+    for (const Assignment& assignment : assignments) list[assignment.name] = assignment.value;
     return list;
   };
   return {{"integrator", options.integrator},

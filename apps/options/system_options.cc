@@ -18,21 +18,21 @@ std::map<std::string, double> byName(const std::vector<Assignment>& assignments)
   return values;
 }
 
-bio::SystemOptions armOptions(const SimulationOptions& options) {
-  bio::SystemOptions arm;
-  arm.skeleton.freeCoordinates = options.coordinates;
-  arm.skeleton.lockedValues = byName(options.locks);
-  arm.prescribed = options.prescribed;
-  arm.prescribed.insert(arm.prescribed.end(), options.prescribedByModel.begin(),
-                        options.prescribedByModel.end());
+bio::SystemOptions systemOptions(const SimulationOptions& options) {
+  bio::SystemOptions system;
+  system.skeleton.freeCoordinates = options.coordinates;
+  system.skeleton.lockedValues = byName(options.locks);
+  system.prescribed = options.prescribed;
+  system.prescribed.insert(system.prescribed.end(), options.prescribedByModel.begin(),
+                           options.prescribedByModel.end());
   for (const auto& [name, value] : options.held) {
-    arm.prescribed.push_back(name);
-    arm.skeleton.lockedValues.erase(name);
+    system.prescribed.push_back(name);
+    system.skeleton.lockedValues.erase(name);
   }
-  arm.skeleton.freeCoordinates.insert(arm.skeleton.freeCoordinates.end(), arm.prescribed.begin(),
-                                      arm.prescribed.end());
-  arm.wrapAsCylinder = options.wrapAsCylinder;
-  return arm;
+  system.skeleton.freeCoordinates.insert(system.skeleton.freeCoordinates.end(),
+                                         system.prescribed.begin(), system.prescribed.end());
+  system.wrapAsCylinder = options.wrapAsCylinder;
+  return system;
 }
 
 bio::SimulationOptions simulationOptions(const SimulationOptions& options, double startTime,

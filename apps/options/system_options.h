@@ -7,7 +7,7 @@
 namespace app {
 
 /// The model options of the command line as options of the library.
-bio::SystemOptions armOptions(const SimulationOptions& options);
+bio::SystemOptions systemOptions(const SimulationOptions& options);
 
 /// The simulation options of the command line, with start time [s] and duration [s], as options of
 /// the library.

@@ -208,19 +208,19 @@ void requireFreeCoordinate(const SimulationOptions& options) {
 
 bio::MusculoskeletalSystem movableSystem(const bio::Model& model, const std::string& file,
                                          const SimulationOptions& options, Summary& summary) {
-  bio::MusculoskeletalSystem arm = [&] {
+  bio::MusculoskeletalSystem system = [&] {
     try {
-      return bio::MusculoskeletalSystem(model, armOptions(options));
+      return bio::MusculoskeletalSystem(model, systemOptions(options));
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format("{}: {}", file, error.what()));
     }
   }();
-  for (const std::string& warning : arm.warnings()) summary.warn(warning);
-  if (arm.numMuscles() == 0) {
+  for (const std::string& warning : system.warnings()) summary.warn(warning);
+  if (system.numMuscles() == 0) {
     throw std::invalid_argument(
         fmt::format("{}: no muscle moves {}", file, fmt::join(options.coordinates, ", ")));
   }
-  return arm;
+  return system;
 }
 
 bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
@@ -242,7 +242,7 @@ bio::Trial readTrialFile(const std::string& file, const bio::Model& model,
     if (remark.weight == bio::Weight::error) throw std::invalid_argument(line);
     if (remark.weight == bio::Weight::warning) trial.warnings.push_back(line);
   }
-  for (std::string& line : bio::heldRemarks(trial, model, armOptions(options).skeleton)) {
+  for (std::string& line : bio::heldRemarks(trial, model, systemOptions(options).skeleton)) {
     trial.warnings.push_back(std::move(line));
   }
   for (const bio::MeasuredChannel& channel : trial.measured) {
@@ -267,18 +267,19 @@ double longestDuration(const std::vector<bio::Trial>& trials) {
 }
 
 TrialInput readTrialInput(const std::string& file, const bio::Model& model,
-                          const bio::MusculoskeletalSystem& arm, const SimulationOptions& options,
-                          Summary& summary, const TrialUse& use) {
+                          const bio::MusculoskeletalSystem& system,
+                          const SimulationOptions& options, Summary& summary, const TrialUse& use) {
   summary.addInput(file);
   TrialInput input;
   input.trial = readTrialFile(file, model, options, use);
   for (const std::string& warning : input.trial.warnings) summary.warn(warning);
-  input.recorded = bio::recordedTrial(
-      input.trial, arm, simulationOptions(options, input.trial.times[0], input.trial.duration()));
+  input.recorded =
+      bio::recordedTrial(input.trial, system,
+                         simulationOptions(options, input.trial.times[0], input.trial.duration()));
   const bio::TrialBeginning beginning =
-      bio::beginningOf(input.trial, model, arm, byName(options.initial));
+      bio::beginningOf(input.trial, model, system, byName(options.initial));
   input.from = beginning.from;
-  input.start = input.recorded.startAt(arm, beginning.point);
+  input.start = input.recorded.startAt(system, beginning.point);
   return input;
 }
 

@@ -86,7 +86,8 @@ struct TrialInput {
 };
 /// @throws what readTrialFile, recordedTrial, beginningOf and initialState throw
 TrialInput readTrialInput(const std::string& file, const bio::Model& model,
-                          const bio::MusculoskeletalSystem& arm, const SimulationOptions& options,
-                          Summary& summary, const TrialUse& use = {});
+                          const bio::MusculoskeletalSystem& system,
+                          const SimulationOptions& options, Summary& summary,
+                          const TrialUse& use = {});
 
 }  // namespace app

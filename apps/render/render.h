@@ -32,7 +32,7 @@ struct RenderOptions {
 
 using Drawing = std::function<ExitStatus(const RenderOptions&, const CommandContext&)>;
 
-/// `render`: a picture or a film of the arm.
+/// `render`: a picture or a film of the system.
 std::unique_ptr<Command> renderCommand(Drawing draw);
 
 /// Path of the program that links VTK, whether or not it was built.

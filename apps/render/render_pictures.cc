@@ -115,7 +115,7 @@ bio::SystemOptions ghostOptions(const bio::Model& model, const SimulationOptions
     return std::none_of(model.wrapObjects.begin(), model.wrapObjects.end(),
                         [&](const bio::WrapObject& wrap) { return wrap.name == name; });
   });
-  return armOptions(known);
+  return systemOptions(known);
 }
 
 /// All that is to be drawn.
@@ -151,25 +151,26 @@ Shown readShown(const RenderOptions& options, Summary& summary) {
                     isOther ? " on " + otherModel.name : "");
   }
 
-  bio::SystemOptions armOptions = app::armOptions(options.simulation);
-  armOptions.skeleton = view::skeletonFor(model, motions, armOptions.skeleton);
+  bio::SystemOptions systemOptions = app::systemOptions(options.simulation);
+  systemOptions.skeleton = view::skeletonFor(model, motions, systemOptions.skeleton);
   view::TendonForces forces;
   if (options.thicknessByForce) {
-    forces = view::tendonForces(model, armOptions, motion, shown.times);
+    forces = view::tendonForces(model, systemOptions, motion, shown.times);
     if (forces.byMuscle.empty()) {
       summary.warn(fmt::format("muscles are drawn with a fixed thickness: {}", forces.whyNone));
     }
   }
   shown.thicknessIsForce = !forces.byMuscle.empty();
-  shown.arm.emplace(model, armOptions, std::move(motion));
-  for (const std::string& warning : shown.arm->poser().warnings()) summary.warn(warning);
-  shown.radii = tubeRadii(shown.arm->poser().muscles(), forces, shown.times.size());
+  shown.system.emplace(model, systemOptions, std::move(motion));
+  for (const std::string& warning : shown.system->poser().warnings()) summary.warn(warning);
+  shown.radii = tubeRadii(shown.system->poser().muscles(), forces, shown.times.size());
   if (hasGhost) {
     if (isOther) {
-      armOptions = ghostOptions(otherModel, options.simulation);
-      armOptions.skeleton = view::skeletonFor(otherModel, {&ghostMotion}, armOptions.skeleton);
+      systemOptions = ghostOptions(otherModel, options.simulation);
+      systemOptions.skeleton =
+          view::skeletonFor(otherModel, {&ghostMotion}, systemOptions.skeleton);
     }
-    shown.ghost.emplace(isOther ? otherModel : model, armOptions, std::move(ghostMotion));
+    shown.ghost.emplace(isOther ? otherModel : model, systemOptions, std::move(ghostMotion));
     shown.ghostRadii.assign(shown.ghost->poser().muscles().size(), ghostRadius);
     if (isOther) {
       for (const std::string& warning : shown.ghost->poser().warnings()) summary.warn(warning);
@@ -184,7 +185,8 @@ std::vector<Eigen::Vector3d> outlineOf(const Shown& shown, bool& ghostIsSeen) {
   const Eigen::Index stride = std::max<Eigen::Index>(1, shown.times.size() / 24);
   for (Eigen::Index k = 0; k < shown.times.size(); k += stride) {
     const double time = shown.times[k];
-    shown.arm->addOutline(shown.arm->at(time, shown.radii[static_cast<std::size_t>(k)]), outline);
+    shown.system->addOutline(shown.system->at(time, shown.radii[static_cast<std::size_t>(k)]),
+                             outline);
     if (shown.ghost && shown.ghost->covers(time)) {
       shown.ghost->addOutline(shown.ghost->at(time, shown.ghostRadii), outline);
       ghostIsSeen = true;
@@ -206,12 +208,13 @@ view::SceneOptions sceneOptions(const RenderOptions& options, const Shown& shown
     scene.middle += point / static_cast<double>(outline.size());
   }
   scene.captions = {
-      fmt::format("{} – {}", shown.arm->modelName(),
+      fmt::format("{} – {}", shown.system->modelName(),
                   std::filesystem::path(options.states).filename().string()),
-      fmt::format("Muscles: {}{}",
-                  shown.thicknessIsForce ? "cross-section grows by 1 mm² per 5 N of tendon force"
-                                         : "equal thickness",
-                  shown.arm->motion().activations.empty() ? "; grey: activation not given" : "")};
+      fmt::format(
+          "Muscles: {}{}",
+          shown.thicknessIsForce ? "cross-section grows by 1 mm² per 5 N of tendon force"
+                                 : "equal thickness",
+          shown.system->motion().activations.empty() ? "; grey: activation not given" : "")};
   if (shown.ghost) scene.captions.push_back(shown.ghostCaption);
   return scene;
 }
@@ -221,7 +224,9 @@ view::SceneOptions sceneOptions(const RenderOptions& options, const Shown& shown
 ExitStatus drawPictures(const RenderOptions& options, const CommandContext& context) {
   const auto begin = std::chrono::steady_clock::now();
   const bool toFilm = options.film && view::FilmWriter::available();
-  OutputFolder folder(context, {!options.film ? "picture.png" : toFilm ? "film.mp4" : frameName(0)});
+  OutputFolder folder(context, {!options.film ? "picture.png"
+                                : toFilm      ? "film.mp4"
+                                              : frameName(0)});
   Summary summary(context);
   const Shown shown = readShown(options, summary);
   const Eigen::VectorXd& times = shown.times;
@@ -232,7 +237,7 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
   }
 
   const view::VirtualDisplay display;
-  view::SystemScene scene(shown.arm->bodies(),
+  view::SystemScene scene(shown.system->bodies(),
                           shown.ghost ? shown.ghost->bodies() : std::vector<view::BodyShape>{},
                           sceneOptions(options, shown, outline));
   for (const std::string& warning : scene.warnings()) summary.warn(warning);
@@ -245,8 +250,8 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
   const auto draw = [&](Eigen::Index k) {
     const double time = times[k];
     const view::SystemPoser::Posture posture =
-        shown.arm->at(time, shown.radii[static_cast<std::size_t>(k)]);
-    view::SystemScene::Moment moment{time, &posture, shown.arm->activationsAt(time), nullptr};
+        shown.system->at(time, shown.radii[static_cast<std::size_t>(k)]);
+    view::SystemScene::Moment moment{time, &posture, shown.system->activationsAt(time), nullptr};
     std::optional<view::SystemPoser::Posture> ghostPosture;
     if (shown.ghost && shown.ghost->covers(time)) {
       ghostPosture = shown.ghost->at(time, shown.ghostRadii);
@@ -299,7 +304,7 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
   summary.set("height_pixels", options.height);
   summary.set("wall_s",
               std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  Report report = reportOn(options, *shown.arm, verdict);
+  Report report = reportOn(options, *shown.system, verdict);
   report.mainPicture = std::move(embedded);
   deliver(context, summary, report, folder);
   return ExitStatus::done;

@@ -55,10 +55,10 @@ class Replay : public Command {
                                            {.experimentalConditions = true, .channels = true});
     for (const std::string& warning : trial.warnings) summary.warn(warning);
     if (trial.known.any()) {
-      model = bio::discover::withExperimentalConditions(model, armOptions(simulation_),
+      model = bio::discover::withExperimentalConditions(model, systemOptions(simulation_),
                                                         simulation_.coordinates, trial);
     }
-    const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
+    const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
     bio::TrialReplay replay;
     {
       ProgressBar bar("replay");
@@ -68,28 +68,30 @@ class Replay : public Command {
         bar.update((t - trial.times[0]) / trial.duration());
         return true;
       };
-      replay = bio::replayTrial(arm, trial, options,
-                                bio::beginningOf(trial, model, arm, byName(simulation_.initial)));
+      replay =
+          bio::replayTrial(system, trial, options,
+                           bio::beginningOf(trial, model, system, byName(simulation_.initial)));
     }
     const bio::Trajectory& motion = replay.motion;
-    const std::optional<bio::LeftRange> left = bio::leftRange(arm, motion);
+    const std::optional<bio::LeftRange> left = bio::leftRange(system, motion);
     if (left) summary.warn(left->what);
-    for (const std::string& sentence : bio::rangeRemarks(arm, motion)) {
+    for (const std::string& sentence : bio::rangeRemarks(system, motion)) {
       const bool isSaid = left && sentence.starts_with(left->name + " leaves its range");
       if (!isSaid) summary.warn(sentence);
     }
     const std::optional<bio::StepEffect> effect =
-        bio::effectOfDoubtfulStep(arm, trial, replay, simulation_.step.has_value());
+        bio::effectOfDoubtfulStep(system, trial, replay, simulation_.step.has_value());
     if (effect) summary.warn(describe(*effect));
-    const bio::MuscleReport muscles = bio::reportMuscles(arm, motion);
+    const bio::MuscleReport muscles = bio::reportMuscles(system, motion);
     folder.writeFile("states.sto", [&](const std::filesystem::path& path) {
-      bio::writeTable(bio::statesTable(model, arm, motion), path);
+      bio::writeTable(bio::statesTable(model, system, motion), path);
     });
     folder.writeFile("forces.sto", [&](const std::filesystem::path& path) {
-      bio::writeTable(bio::forcesTable(arm, motion, muscles), path);
+      bio::writeTable(bio::forcesTable(system, motion, muscles), path);
     });
 
-    const ReplayFindings findings{model_, trial_, model, trial, arm, replay, muscles, left, effect};
+    const ReplayFindings findings{model_, trial_,  model, trial, system,
+                                  replay, muscles, left,  effect};
     summary.setSimulation(simulation_.integrator, replay.options.step, replay.options.duration,
                           motion.wallSeconds);
     tellReplay(findings, summary);

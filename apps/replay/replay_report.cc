@@ -19,7 +19,7 @@ struct ShownUnit {
   std::string name;
 };
 ShownUnit unitOf(const bio::Coordinate& coordinate) {
-  return coordinate.isRotation ? ShownUnit{radian, "deg"} : ShownUnit{1e3, "mm"};
+  return coordinate.isRotation ? ShownUnit{degreesPerRadian, "deg"} : ShownUnit{1e3, "mm"};
 }
 
 std::vector<double> inUnit(const Eigen::VectorXd& values, double factor) {
@@ -32,7 +32,7 @@ const bio::MeasuredChannel* measuredOf(const ReplayFindings& f, const std::strin
 }
 
 Figure motionFigure(const ReplayFindings& f, std::size_t index) {
-  const bio::Coordinate& coordinate = f.arm.skeleton().coordinates()[index];
+  const bio::Coordinate& coordinate = f.system.skeleton().coordinates()[index];
   const ShownUnit unit = unitOf(coordinate);
   Figure figure{.title = fmt::format("Simulated {}", coordinate.name),
                 .xLabel = "Time [s]",
@@ -58,8 +58,8 @@ Figure channelFigure(const ReplayFindings& f, const bio::MeasuredChannel& channe
   const std::string unit = unitText(bio::unitOf(channel.what, f.model));
   const std::vector<double>& time = f.replay.motion.time;
   const bio::ObservedMotion all(
-      f.arm, {{channel.what, Eigen::Map<const Eigen::VectorXd>(
-                                 time.data(), static_cast<Eigen::Index>(time.size()))}});
+      f.system, {{channel.what, Eigen::Map<const Eigen::VectorXd>(
+                                    time.data(), static_cast<Eigen::Index>(time.size()))}});
   Figure figure{
       .title = fmt::format("Simulated and measured {}", name),
       .xLabel = "Time [s]",
@@ -76,9 +76,9 @@ Figure channelFigure(const ReplayFindings& f, const bio::MeasuredChannel& channe
 
 std::vector<Figure> channelFigures(const ReplayFindings& f) {
   std::vector<Figure> figures;
-  for (const bio::ChannelError& one : f.replay.channelErrors) {
-    if (const auto* channel = f.trial.measurementOf(one.what))
-      figures.push_back(channelFigure(f, *channel, one.error));
+  for (const bio::ChannelError& error : f.replay.channelErrors) {
+    if (const auto* channel = f.trial.measurementOf(error.what))
+      figures.push_back(channelFigure(f, *channel, error.error));
   }
   return figures;
 }
@@ -91,8 +91,8 @@ Figure reactionFigure(const ReplayFindings& f, bool ofRotations) {
                 .caption =
                     "What keeps the coordinates on their prescribed course; positive: "
                     "pushes the coordinate up."};
-  for (const int k : f.arm.prescribed()) {
-    const bio::Coordinate& c = f.arm.skeleton().coordinates()[static_cast<std::size_t>(k)];
+  for (const int k : f.system.prescribed()) {
+    const bio::Coordinate& c = f.system.skeleton().coordinates()[static_cast<std::size_t>(k)];
     if (c.isRotation != ofRotations) continue;
     figure.series.push_back({.name = c.name,
                              .x = f.replay.motion.time,
@@ -104,8 +104,8 @@ Figure reactionFigure(const ReplayFindings& f, bool ofRotations) {
 Figure perMuscle(const ReplayFindings& f, const std::string& title, const std::string& yLabel,
                  const Eigen::MatrixXd& rows, double factor, const std::string& caption = {}) {
   Figure figure{.title = title, .xLabel = "Time [s]", .yLabel = yLabel, .caption = caption};
-  for (std::size_t i = 0; i < f.arm.numMuscles(); ++i) {
-    figure.series.push_back({.name = f.arm.muscles()[i].name,
+  for (std::size_t i = 0; i < f.system.numMuscles(); ++i) {
+    figure.series.push_back({.name = f.system.muscles()[i].name,
                              .x = f.replay.motion.time,
                              .y = inUnit(rows.row(static_cast<Eigen::Index>(i)), factor)});
   }
@@ -120,7 +120,7 @@ Figure excitationFigure(const ReplayFindings& f) {
                 .yLabel = "Excitation [1]",
                 .caption = "From the trial, 0 to 1; straight lines between its rows."};
   const double baseline = bio::TrialOptions{}.baseline;
-  for (const bio::SystemMuscle& muscle : f.arm.muscles()) {
+  for (const bio::SystemMuscle& muscle : f.system.muscles()) {
     const auto& names = f.trial.muscles;
     const auto at = std::find(names.begin(), names.end(), muscle.name);
     if (at == names.end()) continue;
@@ -136,7 +136,7 @@ Figure energyFigure(const ReplayFindings& f) {
   Eigen::VectorXd kinetic(K), potential(K), balance(K);
   for (Eigen::Index k = 0; k < K; ++k) {
     const bio::Energy energy =
-        bio::energyOf(f.arm, f.replay.motion.q.col(k), f.replay.motion.qDot.col(k));
+        bio::energyOf(f.system, f.replay.motion.q.col(k), f.replay.motion.qDot.col(k));
     kinetic[k] = energy.kinetic;
     potential[k] = energy.potential;
   }
@@ -170,24 +170,24 @@ Figure energyFigure(const ReplayFindings& f) {
 /// "rms 3.2 deg from the measured elbow_flexion over 451 samples", or nothing measured.
 std::string comparison(const ReplayFindings& f) {
   std::string text;
-  for (const bio::Coordinate& coordinate : f.arm.skeleton().coordinates()) {
+  for (const bio::Coordinate& coordinate : f.system.skeleton().coordinates()) {
     const auto* measured = measuredOf(f, coordinate.name);
     if (measured == nullptr) continue;
     const ShownUnit unit = unitOf(coordinate);
-    const bio::MeasuredError error = bio::compareWithMeasured(f.arm, f.replay.motion, *measured);
+    const bio::MeasuredError error = bio::compareWithMeasured(f.system, f.replay.motion, *measured);
     text += fmt::format(
         "{}{} differs from the measurement by {:.3g} {} (RMS over {} samples), at most {:.3g} {} "
         "at {:.3g} s",
         text.empty() ? "Simulated " : "; ", coordinate.name, error.rms * unit.factor, unit.name,
         error.count, error.largest * unit.factor, unit.name, error.largestAt);
   }
-  for (const bio::ChannelError& one : f.replay.channelErrors) {
-    const std::string unit = unitText(bio::unitOf(one.what, f.model));
+  for (const bio::ChannelError& error : f.replay.channelErrors) {
+    const std::string unit = unitText(bio::unitOf(error.what, f.model));
     text += fmt::format(
         "{}{} differs from the measurement by {:.3g} {} (RMS over {} samples), at most {:.3g} {} "
         "at {:.3g} s",
-        text.empty() ? "Simulated " : "; ", bio::nameOf(one.what), one.error.rms, unit,
-        one.error.count, one.error.largest, unit, one.error.largestAt);
+        text.empty() ? "Simulated " : "; ", bio::nameOf(error.what), error.error.rms, unit,
+        error.error.count, error.error.largest, unit, error.error.largestAt);
   }
   return text.empty() ? "Simulated; the trial has no measured coordinate to compare with" : text;
 }
@@ -208,10 +208,10 @@ nlohmann::ordered_json channelErrors(const ReplayFindings& f) {
   };
   for (const auto& [name, error] : f.replay.errors) {
     const bool turns = bio::findCoordinate(f.model, name).isRotation;
-    add(name, error, turns ? radian : 1, turns ? "deg" : "m");
+    add(name, error, turns ? degreesPerRadian : 1, turns ? "deg" : "m");
   }
-  for (const bio::ChannelError& one : f.replay.channelErrors) {
-    add(bio::nameOf(one.what), one.error, 1, bio::unitOf(one.what, f.model));
+  for (const bio::ChannelError& error : f.replay.channelErrors) {
+    add(bio::nameOf(error.what), error.error, 1, bio::unitOf(error.what, f.model));
   }
   return errors;
 }
@@ -230,11 +230,11 @@ void tellReplay(const ReplayFindings& f, Summary& summary) {
     summary.set("left_range_at_s", f.left->time);
     summary.set("left_range", f.left->what);
   }
-  for (const bio::Coordinate& coordinate : f.arm.skeleton().coordinates()) {
+  for (const bio::Coordinate& coordinate : f.system.skeleton().coordinates()) {
     const auto* measured = measuredOf(f, coordinate.name);
     if (measured == nullptr) continue;
-    const bio::MeasuredError error = bio::compareWithMeasured(f.arm, motion, *measured);
-    const bool first = &coordinate == &f.arm.skeleton().coordinates().front();
+    const bio::MeasuredError error = bio::compareWithMeasured(f.system, motion, *measured);
+    const bool first = &coordinate == &f.system.skeleton().coordinates().front();
     const std::string suffix = (coordinate.isRotation ? "_deg" : "_mm");
     const std::string prefix = first ? "" : coordinate.name + "_";
     summary.set(prefix + "rms_error" + suffix, error.rms * unitOf(coordinate).factor);
@@ -242,10 +242,10 @@ void tellReplay(const ReplayFindings& f, Summary& summary) {
     summary.set(prefix + "compared_samples", error.count);
   }
   summary.set("rms_error", channelErrors(f));
-  if (!f.arm.prescribed().empty()) {
+  if (!f.system.prescribed().empty()) {
     std::vector<std::string> prescribed;
-    for (const int k : f.arm.prescribed()) {
-      prescribed.push_back(f.arm.skeleton().coordinates()[static_cast<std::size_t>(k)].name);
+    for (const int k : f.system.prescribed()) {
+      prescribed.push_back(f.system.skeleton().coordinates()[static_cast<std::size_t>(k)].name);
     }
     summary.set("prescribed", prescribed);
   }
@@ -257,14 +257,14 @@ void tellReplay(const ReplayFindings& f, Summary& summary) {
                   ? static_cast<double>(motion.newtonIterations) / static_cast<double>(motion.steps)
                   : 0.0);
   summary.set("halved_steps", motion.halvedSteps);
-  summary.set("energy_error_J", bio::energyError(f.arm, motion));
+  summary.set("energy_error_J", bio::energyError(f.system, motion));
   summary.set("external_work_J", motion.externalWork.size() > 0
                                      ? motion.externalWork[motion.externalWork.size() - 1]
                                      : 0.0);
   std::vector<std::string> muscles;
-  for (const bio::SystemMuscle& muscle : f.arm.muscles()) muscles.push_back(muscle.name);
+  for (const bio::SystemMuscle& muscle : f.system.muscles()) muscles.push_back(muscle.name);
   summary.set("muscles", muscles);
-  summary.set("notes", f.arm.notes());
+  summary.set("notes", f.system.notes());
 }
 
 Report replayReport(const ReplayFindings& f) {
@@ -287,8 +287,8 @@ Report replayReport(const ReplayFindings& f) {
   }
   // where the first coordinate is prescribed, what was measured of it comes first
   std::vector<Figure> figures = channelFigures(f);
-  for (std::size_t i = 0; i < f.arm.skeleton().coordinates().size(); ++i) {
-    const bool first = i == 0 && !f.arm.isPrescribed(0);
+  for (std::size_t i = 0; i < f.system.skeleton().coordinates().size(); ++i) {
+    const bool first = i == 0 && !f.system.isPrescribed(0);
     figures.insert(first ? figures.begin() : figures.end(), motionFigure(f, i));
   }
   report.mainFigure = std::move(figures.front());
@@ -303,7 +303,7 @@ Report replayReport(const ReplayFindings& f) {
   report.details.push_back(
       perMuscle(f, "Activations", "Activation [1]", f.replay.motion.activation, 1));
   report.details.push_back(perMuscle(f, "Tendon forces", "Force [N]", f.muscles.tendonForce, 1));
-  const bio::Coordinate& first = f.arm.skeleton().coordinates().front();
+  const bio::Coordinate& first = f.system.skeleton().coordinates().front();
   const Eigen::MatrixXd moments = f.muscles.tendonForce.cwiseProduct(f.muscles.momentArm);
   report.details.push_back(perMuscle(f, "Moments", first.isRotation ? "Moment [N m]" : "Force [N]",
                                      moments, 1,
@@ -322,9 +322,9 @@ Report replayReport(const ReplayFindings& f) {
                             static_cast<double>(f.replay.motion.newtonIterations) /
                                 std::max(1.0, static_cast<double>(f.replay.motion.steps)),
                             f.replay.motion.halvedSteps, f.replay.motion.wallSeconds * 1e3)});
-  if (!f.arm.notes().empty()) {
+  if (!f.system.notes().empty()) {
     report.details.push_back(Section{"Notes"});
-    for (const std::string& note : f.arm.notes()) report.details.push_back(Paragraph{note});
+    for (const std::string& note : f.system.notes()) report.details.push_back(Paragraph{note});
   }
   return report;
 }

@@ -17,7 +17,7 @@ struct ReplayFindings {
   const std::string& trialFile;
   const bio::Model& model;
   const bio::Trial& trial;
-  const bio::MusculoskeletalSystem& arm;
+  const bio::MusculoskeletalSystem& system;
   const bio::TrialReplay& replay;
   const bio::MuscleReport& muscles;
   const std::optional<bio::LeftRange>& left;

@@ -53,12 +53,13 @@ DiscoverWording wordingOf(const RobotProblem& data) {
     const auto& channel = data.model().channels[c];
     const bool isAngle = channel.unit == "rad";
     angles = angles && isAngle;
-    wording.outputs.push_back({channel.name, isAngle ? "deg" : channel.unit, isAngle ? radian : 1});
+    wording.outputs.push_back(
+        {channel.name, isAngle ? "deg" : channel.unit, isAngle ? degreesPerRadian : 1});
   }
   const ShownOutput first = wording.outputs.front();
   wording.axes = {
       {first.name, first.unit, first.scale, "angle", "Acceleration of the cart [m/s²]", "m/s²"}};
-  wording.unit = angles ? radian : 1;
+  wording.unit = angles ? degreesPerRadian : 1;
   wording.gapUnit = first.unit;
   wording.gapEnd = angles ? "_deg" : "_N";
   wording.ofForce = "an acceleration of the cart [m/s²]";
@@ -188,7 +189,7 @@ class RobotSearch {
     asked.without = request_.without;
     for (std::size_t c = 0; c < request_.noise.size(); ++c) {
       const bool isAngle = c < channels.size() && channels[c].unit == "rad";
-      asked.sds.push_back(isAngle ? request_.noise[c] * degree : request_.noise[c]);
+      asked.sds.push_back(isAngle ? request_.noise[c] * radiansPerDegree : request_.noise[c]);
     }
     return asked;
   }

@@ -236,15 +236,15 @@ class Robot : public Command {
     if (objective_.empty()) return {};
     info::InformationWeights weights;
     for (const std::string& text : objective_) {
-      const Assignment one = parseAssignment(text);
-      if (one.name == "e")
-        weights.e = one.value;
-      else if (one.name == "a")
-        weights.a = one.value;
-      else if (one.name == "d")
-        weights.d = one.value;
-      else if (one.name == "condition")
-        weights.condition = one.value;
+      const Assignment assignment = parseAssignment(text);
+      if (assignment.name == "e")
+        weights.e = assignment.value;
+      else if (assignment.name == "a")
+        weights.a = assignment.value;
+      else if (assignment.name == "d")
+        weights.d = assignment.value;
+      else if (assignment.name == "condition")
+        weights.condition = assignment.value;
       else
         throw std::invalid_argument(
             fmt::format("--objective {}: criterion must be e, a, d or condition", text));

@@ -91,27 +91,28 @@ class Sensitivity : public Command {
     Summary summary(context);
     const bio::Model model = readModel(model_, summary);
     chooseCoordinates(simulation_, model, trials_, false, observe_);
-    const bio::MusculoskeletalSystem arm = movableSystem(model, model_, simulation_, summary);
-    if (list_) return listParameters(context, model, arm);
+    const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
+    if (list_) return listParameters(context, model, system);
 
     std::vector<StudiedTrial> trials;
     std::vector<bio::Trial> recorded;
     for (const std::string& file : trials_) {
-      TrialInput input =
-          readTrialInput(file, model, arm, simulation_, summary, {.channels = !observe_.empty()});
-      trials.push_back(bio::studiedTrial(input.trial, model, arm, {input.start.q, input.start.qDot},
+      TrialInput input = readTrialInput(file, model, system, simulation_, summary,
+                                        {.channels = !observe_.empty()});
+      trials.push_back(bio::studiedTrial(input.trial, model, system,
+                                         {input.start.q, input.start.qDot},
                                          input.recorded.simulation));
       recorded.push_back(std::move(input.trial));
     }
     inputsMustDiffer(summary, trials_.size());
     const StudiedTrial& first = trials.front();
-    const bio::Coordinate& coordinate = arm.skeleton().coordinates().front();
-    bio::SensitivityQuestion question{armOptions(simulation_), "",
+    const bio::Coordinate& coordinate = system.skeleton().coordinates().front();
+    bio::SensitivityQuestion question{systemOptions(simulation_), "",
                                       noise_ / shownFactor(coordinate)};
     if (!simulation_.coordinates.empty()) question.coordinate = simulation_.coordinates.front();
     SensitivityFindings findings{model_, trials_, coordinate, recorded.front(), question.noise, 0};
     findings.model = &model;
-    question.observed = readObserved(observe_, model, arm);
+    question.observed = readObserved(observe_, model, system);
     findings.observed = inWords(question.observed, model);
     if (!question.observed.empty()) {
       findings.noise = 1;
@@ -135,7 +136,7 @@ class Sensitivity : public Command {
     }
 
     if (swept) findings.sweeps.push_back(sweep(first, question, *swept));
-    if (!question.selection.empty()) analyse(trials, arm, question, findings);
+    if (!question.selection.empty()) analyse(trials, system, question, findings);
     if (held) {
       ProgressBar bar("profile");
       findings.profile = bio::likelihoodProfile(trials, question, *held);
@@ -146,7 +147,7 @@ class Sensitivity : public Command {
     }
 
     if (const auto left = bio::leftRange(
-            arm, findings.local ? findings.local->motion : findings.sweeps.front().nominal)) {
+            system, findings.local ? findings.local->motion : findings.sweeps.front().nominal)) {
       summary.warn(left->what);
     }
     writeTables(findings, folder);
@@ -157,8 +158,8 @@ class Sensitivity : public Command {
     tellSensitivity(findings, summary);
     deliver(context, summary, sensitivityReport(findings), folder);
     bool complete = true;
-    for (const bio::Sweep& one : findings.sweeps) {
-      for (const bio::SweepRun& sweepRun : one.runs) {
+    for (const bio::Sweep& sweep : findings.sweeps) {
+      for (const bio::SweepRun& sweepRun : sweep.runs) {
         complete = complete && sweepRun.motion.outcome == bio::Outcome::completed;
       }
     }
@@ -226,7 +227,7 @@ class Sensitivity : public Command {
                                [&](double done) { bar.update(done); });
   }
 
-  void analyse(const std::vector<StudiedTrial>& trials, const bio::MusculoskeletalSystem& arm,
+  void analyse(const std::vector<StudiedTrial>& trials, const bio::MusculoskeletalSystem& system,
                const bio::SensitivityQuestion& question, SensitivityFindings& findings) const {
     ProgressBar bar("sensitivity");
     const StudiedTrial& first = trials.front();
@@ -237,16 +238,16 @@ class Sensitivity : public Command {
     findings.information = bio::localSensitivity(trials, question, [&](double done) {
                              bar.update(done * most / (most + 1));
                            }).information;
-    const std::size_t further = bio::furtherChannels(arm, question).size();
+    const std::size_t further = bio::furtherChannels(system, question).size();
     if (!bio::gainsTakeLong(question.selection.size(), further)) {
-      findings.gains = bio::furtherGains(trials, arm, question, *findings.information);
+      findings.gains = bio::furtherGains(trials, system, question, *findings.information);
     }
     // what all sensitivities cost beside the motion: the best of five, since others use the machine
     double alone = 0, with = 0;
     for (int repeat = 0; repeat < 5; ++repeat) {
-      auto local = bio::simulateWithSensitivities(arm, first.catalogue, first.catalogue.nominal(),
-                                                  question.selection, first.recorded.excitation,
-                                                  {first.recorded.simulation, false});
+      auto local = bio::simulateWithSensitivities(
+          system, first.catalogue, first.catalogue.nominal(), question.selection,
+          first.recorded.excitation, {first.recorded.simulation, false});
       const double motion = local.motion.wallSeconds;
       alone = repeat == 0 ? motion : std::min(alone, motion);
       const double sum = motion + local.wallSeconds;

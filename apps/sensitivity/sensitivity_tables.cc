@@ -84,9 +84,9 @@ void writeTables(const SensitivityFindings& findings, OutputFolder& folder) {
     folder.write("sensitivity.csv", [&](std::ostream& out) { writeSensitivities(findings, out); });
     folder.write("fisher.csv", [&](std::ostream& out) { writeFisher(findings, out); });
   }
-  for (const bio::Sweep& one : findings.sweeps) {
+  for (const bio::Sweep& sweep : findings.sweeps) {
     folder.write("sweep.csv",
-                 [&](std::ostream& out) { writeSweep(one, findings.coordinate, out); });
+                 [&](std::ostream& out) { writeSweep(sweep, findings.coordinate, out); });
   }
   if (findings.profile) {
     folder.write("profile.csv", [&](std::ostream& out) { writeProfile(*findings.profile, out); });

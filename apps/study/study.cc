@@ -136,10 +136,10 @@ class StudyCommand : public Command {
     });
     results.write("estimates.csv", [&](std::ostream& out) {
       out << "subject,parameter,unit,model,estimate,sd\n";
-      for (const StudyEstimate& one : findings.estimates) {
-        out << fmt::format("{},{},{},{:.10g},{:.10g},{}\n", one.subject, one.name, one.unit,
-                           one.nominal, one.estimate,
-                           std::isnan(one.sd) ? "" : fmt::format("{:.10g}", one.sd));
+      for (const StudyEstimate& estimate : findings.estimates) {
+        out << fmt::format("{},{},{},{:.10g},{:.10g},{}\n", estimate.subject, estimate.name,
+                           estimate.unit, estimate.nominal, estimate.estimate,
+                           std::isnan(estimate.sd) ? "" : fmt::format("{:.10g}", estimate.sd));
       }
     });
     const auto statuses = countsOf(findings, "status");

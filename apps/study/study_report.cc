@@ -81,25 +81,26 @@ Table parametersTable(const StudyFindings& f) {
               .columns = {"parameter [unit]", "subjects", "model", "mean", "scatter of subjects",
                           "typical standard deviation of one"}};
   std::vector<std::string> names;
-  for (const StudyEstimate& one : f.estimates)
-    if (std::find(names.begin(), names.end(), one.name) == names.end()) names.push_back(one.name);
+  for (const StudyEstimate& estimate : f.estimates)
+    if (std::find(names.begin(), names.end(), estimate.name) == names.end())
+      names.push_back(estimate.name);
   for (const std::string& name : names) {
     double sum = 0, squares = 0, nominal = 0, variances = 0;
     int count = 0, known = 0;
     std::string unit;
-    for (const StudyEstimate& one : f.estimates) {
-      if (one.name != name) continue;
-      sum += one.estimate;
-      nominal += one.nominal;
-      unit = one.unit;
+    for (const StudyEstimate& estimate : f.estimates) {
+      if (estimate.name != name) continue;
+      sum += estimate.estimate;
+      nominal += estimate.nominal;
+      unit = estimate.unit;
       ++count;
-      if (!(one.sd > 0)) continue;
-      variances += one.sd * one.sd;
+      if (!(estimate.sd > 0)) continue;
+      variances += estimate.sd * estimate.sd;
       ++known;
     }
     const double mean = sum / count;
-    for (const StudyEstimate& one : f.estimates)
-      if (one.name == name) squares += (one.estimate - mean) * (one.estimate - mean);
+    for (const StudyEstimate& estimate : f.estimates)
+      if (estimate.name == name) squares += (estimate.estimate - mean) * (estimate.estimate - mean);
     table.rows.push_back({unit.empty() ? name : fmt::format("{} [{}]", name, unit),
                           std::to_string(count), numberText(nominal / count), numberText(mean),
                           count > 1 ? numberText(std::sqrt(squares / (count - 1)), 3) : "–",

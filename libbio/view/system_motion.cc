@@ -207,7 +207,8 @@ Eigen::RowVectorXd slopes(const Eigen::VectorXd& of, const Eigen::VectorXd& valu
   return times
       .unaryExpr([&](double t) {
         const double from = std::max(first, t - half), to = std::min(last, t + half);
-        return to > from ? (valueAt(of, values, to) - valueAt(of, values, from)) / (to - from) : 0.0;
+        return to > from ? (valueAt(of, values, to) - valueAt(of, values, from)) / (to - from)
+                         : 0.0;
       })
       .transpose();
 }
@@ -222,11 +223,11 @@ TendonForces tendonForces(const Model& model, const SystemOptions& options,
     return forces;
   }
   try {
-    const MusculoskeletalSystem arm(model, options);
+    const MusculoskeletalSystem system(model, options);
     Trajectory shown;
     shown.time = {times.begin(), times.end()};
-    const auto n = static_cast<Eigen::Index>(arm.numMuscles());
-    shown.q.resize(arm.skeleton().numCoordinates(), times.size());
+    const auto n = static_cast<Eigen::Index>(system.numMuscles());
+    shown.q.resize(system.skeleton().numCoordinates(), times.size());
     shown.qDot.setZero(shown.q.rows(), times.size());
     shown.fibreLength.resize(n, times.size());
     shown.activation.setZero(n, times.size());
@@ -234,7 +235,7 @@ TendonForces tendonForces(const Model& model, const SystemOptions& options,
       return times.unaryExpr([&](double t) { return valueAt(motion.time, values, t); }).transpose();
     };
     for (Eigen::Index i = 0; i < shown.q.rows(); ++i) {
-      const Coordinate& coordinate = arm.skeleton().coordinates()[static_cast<std::size_t>(i)];
+      const Coordinate& coordinate = system.skeleton().coordinates()[static_cast<std::size_t>(i)];
       const auto found = motion.coordinates.find(coordinate.name);
       if (found == motion.coordinates.end()) {
         shown.q.row(i).setConstant(coordinate.defaultValue);
@@ -244,14 +245,14 @@ TendonForces tendonForces(const Model& model, const SystemOptions& options,
       }
     }
     for (Eigen::Index i = 0; i < n; ++i) {
-      const std::string& muscle = arm.muscles()[static_cast<std::size_t>(i)].name;
+      const std::string& muscle = system.muscles()[static_cast<std::size_t>(i)].name;
       const auto found = motion.fibreLengths.find(muscle);
       if (found == motion.fibreLengths.end()) {
         forces.whyNone = fmt::format("the states give no fibre length of '{}'", muscle);
         return forces;
       }
       shown.fibreLength.row(i) = sample(found->second);
-      if (arm.muscles()[static_cast<std::size_t>(i)].muscle.hasFibreState()) continue;
+      if (system.muscles()[static_cast<std::size_t>(i)].muscle.hasFibreState()) continue;
       const auto active = motion.activations.find(muscle);
       if (active == motion.activations.end()) {
         forces.whyNone = fmt::format(
@@ -260,9 +261,9 @@ TendonForces tendonForces(const Model& model, const SystemOptions& options,
       }
       shown.activation.row(i) = sample(active->second);
     }
-    const MuscleReport report = reportMuscles(arm, shown);
+    const MuscleReport report = reportMuscles(system, shown);
     for (Eigen::Index i = 0; i < n; ++i) {
-      forces.byMuscle[arm.muscles()[static_cast<std::size_t>(i)].name] =
+      forces.byMuscle[system.muscles()[static_cast<std::size_t>(i)].name] =
           report.tendonForce.row(i).transpose();
     }
   } catch (const std::invalid_argument& error) {

@@ -69,8 +69,8 @@ void place(vtkActor* actor, const Placement<double>& X) {
 }
 
 bool sameBones(const BodyShape& a, const BodyShape& b) {
-  const auto same = [](const TaperedBone& one, const TaperedBone& other) {
-    return one.from == other.from && one.to == other.to && one.shaftRadius == other.shaftRadius;
+  const auto same = [](const TaperedBone& bone, const TaperedBone& other) {
+    return bone.from == other.from && bone.to == other.to && bone.shaftRadius == other.shaftRadius;
   };
   return a.geometryFiles == b.geometryFiles &&
          std::equal(a.bones.begin(), a.bones.end(), b.bones.begin(), b.bones.end(), same);

@@ -37,7 +37,7 @@ constexpr PictureFrame pictureFrame = {-0.93, 0.68, -0.76, 0.7};
 /// Bones, joints, muscles, wraps, ground, legend and time stamp, drawn off screen.
 class SystemScene {
  public:
-  /// One moment of the second arm or motion is drawn translucent if `ghost` is not null.
+  /// One moment of the second system or motion is drawn translucent if `ghost` is not null.
   struct Moment {
     double time = 0;  ///< [s]
     const SystemPoser::Posture* posture = nullptr;
@@ -46,7 +46,7 @@ class SystemScene {
   };
 
   /// There must be a display (VirtualDisplay) as long as the scene lives.
-  /// @param ghosts  the bodies of the second arm; empty: none is ever drawn
+  /// @param ghosts  the bodies of the second system; empty: none is ever drawn
   SystemScene(const std::vector<BodyShape>& bodies, const std::vector<BodyShape>& ghosts,
               const SceneOptions& options);
   ~SystemScene();

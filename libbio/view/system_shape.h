@@ -46,7 +46,7 @@ struct MuscleShape {
 /// @param tendonForce  F [N]; below 0 (a slack tendon that is extrapolated) as 0
 double tubeRadius(double tendonForce);
 
-/// An arm that takes on postures.
+/// A system that takes on postures.
 class SystemPoser {
  public:
   /// @throws std::invalid_argument what Skeleton and MusclePath throw

@@ -4,7 +4,7 @@
 
 #include "arguments/columns.h"
 #include "arguments/file_name.h"
-#include "arms.h"
+#include "systems.h"
 #include "bio/tables/different_trials.h"
 #include "bio/tables/table_file.h"
 #include "discovery/verdict.h"

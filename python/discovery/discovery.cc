@@ -5,7 +5,7 @@
 #include <optional>
 #include <variant>
 
-#include "arms.h"
+#include "systems.h"
 #include "bio/discovery/effect_names.h"
 #include "bio/discovery/effects.h"
 #include "bio/discovery/workflow.h"
@@ -34,11 +34,11 @@ py::object effectOf(const MusculoskeletalProblem& data, const info::discover::Na
 py::list plannedOf(const MusculoskeletalProblem& data, const Verdict& verdict,
                    const std::vector<bio::discover::PredictedExperiment>& predictedExperiments) {
   py::list planned;
-  for (const auto& one : predictedExperiments) {
+  for (const auto& experiment : predictedExperiments) {
     py::dict nats;
-    for (std::size_t i = 0; i < one.nats.size(); ++i)
-      nats[rivalName(data, verdict, i + 1).c_str()] = one.nats[i];
-    planned.append(results("what"_a = one.sentence, "of"_a = rivalName(data, verdict, 0),
+    for (std::size_t i = 0; i < experiment.nats.size(); ++i)
+      nats[rivalName(data, verdict, i + 1).c_str()] = experiment.nats[i];
+    planned.append(results("what"_a = experiment.sentence, "of"_a = rivalName(data, verdict, 0),
                            "expected_nats"_a = nats));
   }
   return planned;
@@ -128,29 +128,30 @@ py::list outputsOf(const MusculoskeletalProblem& data, const Verdict& verdict) {
   for (std::size_t o = 0; o < model.sensors().size(); ++o)
     outputs.append(results("name"_a = bio::nameOf(model.sensors()[o]),
                            "unit"_a = bio::unitOf(model.sensors()[o], model.base()),
-                           "noise"_a = verdict.outputSd.sd(o)));
+                           "noise"_a = verdict.sds.sd(o)));
   return outputs;
 }
 
 py::object listEffects(const bio::Model& model, const Names& coordinate,
                        const std::map<std::string, double>& lock) {
-  const SystemChoice choice = armChoice(model, {}, coordinate, lock, "vi", {});
+  const SystemChoice choice = systemChoice(model, {}, coordinate, lock, "vi", {});
   std::optional<bio::discover::EncompassingModel> encompassing;
   interruptible([&](const std::atomic<bool>&) {
     encompassing.emplace(
-        bio::discover::encompassingModel(model, choice.armOptions(), inQuestion(choice, {})));
+        bio::discover::encompassingModel(model, choice.systemOptions(), inQuestion(choice, {})));
   });
   py::list effects;
-  for (const info::discover::Candidate& one : encompassing->candidates()) {
+  for (const info::discover::Candidate& candidate : encompassing->candidates()) {
     py::dict parameters;
-    for (const std::size_t k : one.quantities) {
+    for (const std::size_t k : candidate.quantities) {
       const info::discover::Quantity& quantity = encompassing->quantities()[k];
       parameters[quantity.name.c_str()] = quantity.unit;
     }
-    effects.append(results("id"_a = one.id, "long_id"_a = bio::discover::effectLongName(one.id),
-                           "name"_a = one.name, "kind"_a = info::discover::name(one.kind),
-                           "meaning"_a = one.sentence, "parameters"_a = parameters,
-                           "equivalents"_a = one.equivalents));
+    effects.append(
+        results("id"_a = candidate.id, "long_id"_a = bio::discover::effectLongName(candidate.id),
+                "name"_a = candidate.name, "kind"_a = info::discover::name(candidate.kind),
+                "meaning"_a = candidate.sentence, "parameters"_a = parameters,
+                "equivalents"_a = candidate.equivalents));
   }
   return results("effects"_a = effects, "present"_a = encompassing->present());
 }
@@ -161,14 +162,14 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                     std::optional<double> inputScatter, const Names& coordinate,
                     const std::map<std::string, double>& lock, const std::string& integrator,
                     std::optional<double> firstStep) {
-  const SystemChoice choice = armChoice(model, trials, coordinate, lock, integrator, firstStep);
+  const SystemChoice choice = systemChoice(model, trials, coordinate, lock, integrator, firstStep);
   bio::requireDifferentTrials(trials, holdOut);
   trials.insert(trials.end(), holdOut.begin(), holdOut.end());
   const std::vector<std::string> coordinates = inQuestion(choice, trials);
   const std::vector<bio::Observable> outputs =
-      bio::discover::measuredOutputs(trials, choice.armOptions(), coordinates);
+      bio::discover::measuredOutputs(trials, choice.systemOptions(), coordinates);
   bio::discover::DiscoveryRequest asked{model,
-                                        choice.armOptions(),
+                                        choice.systemOptions(),
                                         coordinates,
                                         std::move(trials),
                                         holdOut.size(),
@@ -181,7 +182,7 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   asked.problem.without = without;
   asked.search = searchOptions(maxEffects, inputScatter);
   asked.problem.sensors = outputs;
-  if (noise) asked.search.outputSd = noiseOf(*noise, model, outputs);
+  if (noise) asked.search.sds = noiseOf(*noise, model, outputs);
   asked.provenance.tool = "fisherhill " + std::string(info::version());
   for (const bio::Trial& trial : asked.trials)
     asked.provenance.data.push_back(fmt::format("{} SHA-256 {}", trial.file, trial.sha256));
@@ -198,7 +199,7 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   for (std::size_t i = 0; i < verdict.effects.size(); ++i)
     effects.append(effectOf(data, verdict.effects[i], result.sizes[i]));
   return results(**verdictMembers(data, found, result.fitted), "effects"_a = effects,
-                 "noise"_a = verdict.outputSd.sd(0), "outputs"_a = outputsOf(data, verdict),
+                 "noise"_a = verdict.sds.sd(0), "outputs"_a = outputsOf(data, verdict),
                  "position_break"_a =
                      result.positionBreak ? py::cast(result.positionBreak->position) : py::none(),
                  "trials_are_cut"_a = result.trialsAreCut,

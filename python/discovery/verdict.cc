@@ -15,10 +15,10 @@ using info::discover::Verdict;
 
 py::dict estimatesOf(const DiscoveryProblem& data, const std::vector<Estimate>& estimates) {
   py::dict all;
-  for (const Estimate& one : estimates) {
-    const auto& quantity = data.quantities()[one.quantity];
+  for (const Estimate& estimate : estimates) {
+    const auto& quantity = data.quantities()[estimate.quantity];
     all[quantity.name.c_str()] =
-        results("value"_a = one.value, "sd"_a = one.sd, "unit"_a = quantity.unit);
+        results("value"_a = estimate.value, "sd"_a = estimate.sd, "unit"_a = quantity.unit);
   }
   return all;
 }

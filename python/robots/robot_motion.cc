@@ -35,20 +35,20 @@ py::array_t<double> stackOf(const std::vector<MatrixXd>& matrices) {
 
 std::vector<std::string> namesOf(const std::vector<info::Parameter>& parameters) {
   std::vector<std::string> names;
-  for (const info::Parameter& one : parameters) names.push_back(one.name);
+  for (const info::Parameter& parameter : parameters) names.push_back(parameter.name);
   return names;
 }
 
 std::vector<std::string> unitsOf(const std::vector<info::Parameter>& parameters) {
   std::vector<std::string> units;
-  for (const info::Parameter& one : parameters) units.push_back(one.unit);
+  for (const info::Parameter& parameter : parameters) units.push_back(parameter.unit);
   return units;
 }
 
 py::object trialsOf(const info::MonteCarloResult& found) {
   std::vector<VectorXd> estimates;
-  for (const info::MonteCarloTrial& one : found.trials)
-    if (one.converged) estimates.push_back(one.parameters);
+  for (const info::MonteCarloTrial& trial : found.trials)
+    if (trial.converged) estimates.push_back(trial.parameters);
   return results("trials"_a = found.trials.size(), "converged"_a = found.converged,
                  "mean"_a = found.mean, "covariance"_a = found.covariance,
                  "estimates"_a = rowsOf(estimates));
@@ -190,8 +190,8 @@ py::object optimiseRobotMotion(const std::string& robot, bool discrete,
   request.threads = threads;
   const MotionResult found = optimised(request);
   const info::SearchResult& search = found.search;
-  const auto tried = [](const std::optional<info::robot::MotionTrials>& one) {
-    return one ? trialsOf(one->result) : py::none();
+  const auto tried = [](const std::optional<info::robot::MotionTrials>& trials) {
+    return trials ? trialsOf(trials->result) : py::none();
   };
   return results("names"_a = namesOf(found.unknown), "units"_a = unitsOf(found.unknown),
                  "state_names"_a = found.states, "before"_a = motionOf(found.before),
@@ -247,17 +247,18 @@ py::object robotInformation(const std::string& robot, std::optional<double> ampl
 
 py::list approachesOf(const std::vector<info::robot::EstimatorConvergence>& all) {
   py::list list;
-  for (const info::robot::EstimatorConvergence& one : all) {
-    MatrixXd rows(std::ssize(one.rows), 4);
+  for (const info::robot::EstimatorConvergence& convergence : all) {
+    MatrixXd rows(std::ssize(convergence.rows), 4);
     for (Index k = 0; k < rows.rows(); ++k) {
-      const info::ConvergenceRow& row = one.rows[static_cast<std::size_t>(k)];
+      const info::ConvergenceRow& row = convergence.rows[static_cast<std::size_t>(k)];
       rows.row(k) << row.cost, row.error, row.ratio, row.order;
     }
-    list.append(results("method"_a = one.method, "iterations"_a = one.estimate.iterations,
-                        "converged"_a = one.estimate.converged,
-                        "parameters"_a = one.estimate.parameters, "cost"_a = VectorXd(rows.col(0)),
-                        "error"_a = VectorXd(rows.col(1)), "ratio"_a = VectorXd(rows.col(2)),
-                        "order"_a = VectorXd(rows.col(3)), "mean_ratio"_a = one.meanRatio));
+    list.append(
+        results("method"_a = convergence.method, "iterations"_a = convergence.estimate.iterations,
+                "converged"_a = convergence.estimate.converged,
+                "parameters"_a = convergence.estimate.parameters, "cost"_a = VectorXd(rows.col(0)),
+                "error"_a = VectorXd(rows.col(1)), "ratio"_a = VectorXd(rows.col(2)),
+                "order"_a = VectorXd(rows.col(3)), "mean_ratio"_a = convergence.meanRatio));
   }
   return list;
 }

@@ -85,17 +85,18 @@ py::object estimateStringLength(const std::vector<double>& initialLengths, doubl
                     "where the force does not depend on the string's length; must be > 0",
                     trackingWeight, info::describe(found.firstDecision)));
   py::list trials;
-  for (const info::robot::StringLengthTrial& one : found.trials)
-    trials.append(results("initial_length"_a = one.initialLength, "length"_a = one.learnt.length(),
-                          "length_sd"_a = one.learnt.estimates.back().lengthSd,
-                          "mass"_a = one.learnt.estimates.back().mass,
-                          "estimates"_a = estimatesOf(one.learnt.estimates),
-                          "samples"_a = samplesOf(one.learnt.samples),
-                          "clipped_samples"_a = one.learnt.clippedSamples,
-                          "least_tension"_a = one.learnt.leastTension,
-                          "deadline_misses"_a = one.learnt.controller.misses,
-                          "swing_without"_a = swingOf(one.withoutEstimation),
-                          "swing_with"_a = swingOf(one.withEstimation)));
+  for (const info::robot::StringLengthTrial& trial : found.trials)
+    trials.append(results("initial_length"_a = trial.initialLength,
+                          "length"_a = trial.learnt.length(),
+                          "length_sd"_a = trial.learnt.estimates.back().lengthSd,
+                          "mass"_a = trial.learnt.estimates.back().mass,
+                          "estimates"_a = estimatesOf(trial.learnt.estimates),
+                          "samples"_a = samplesOf(trial.learnt.samples),
+                          "clipped_samples"_a = trial.learnt.clippedSamples,
+                          "least_tension"_a = trial.learnt.leastTension,
+                          "deadline_misses"_a = trial.learnt.controller.misses,
+                          "swing_without"_a = swingOf(trial.withoutEstimation),
+                          "swing_with"_a = swingOf(trial.withEstimation)));
   return results("trials"_a = trials, "mean"_a = found.mean, "sd"_a = found.sd,
                  "largest_error"_a = found.largestError,
                  "successes_without"_a = found.successesWithout,

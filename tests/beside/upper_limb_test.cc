@@ -36,30 +36,30 @@ TEST_F(UpperLimb, ForearmInertiaAndGravityMomentAreThoseOfSimbodyOnTheFullModel)
 }
 
 TEST_F(UpperLimb, SimulatesWithEveryMuscleThatHasAnExactPath) {
-  const MusculoskeletalSystem arm(model_, {{{"elbow_flexion"}, {}}, {"Elbow_BIC_BRD"}, {}});
-  EXPECT_GE(arm.numMuscles(), 8u);
-  for (const std::string& warning : arm.warnings()) ADD_FAILURE() << warning;
+  const MusculoskeletalSystem system(model_, {{{"elbow_flexion"}, {}}, {"Elbow_BIC_BRD"}, {}});
+  EXPECT_GE(system.numMuscles(), 8u);
+  for (const std::string& warning : system.warnings()) ADD_FAILURE() << warning;
   Eigen::MatrixXd u =
-      Eigen::MatrixXd::Constant(2, static_cast<Eigen::Index>(arm.numMuscles()), 0.02);
-  for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
-    if (arm.muscles()[i].name.starts_with("BIC"))
+      Eigen::MatrixXd::Constant(2, static_cast<Eigen::Index>(system.numMuscles()), 0.02);
+  for (std::size_t i = 0; i < system.numMuscles(); ++i) {
+    if (system.muscles()[i].name.starts_with("BIC"))
       u.col(static_cast<Eigen::Index>(i)).setConstant(0.15);
   }
   const ExcitationSignal excitation({0, 4.5}, u);
-  const SystemState start = initialState(arm, Eigen::VectorXd::Constant(1, 0.6), excitation, 0);
+  const SystemState start = initialState(system, Eigen::VectorXd::Constant(1, 0.6), excitation, 0);
   SimulationOptions options;
   options.duration = 4.5;
-  const Trajectory variational = simulate(arm, excitation, start, options);
+  const Trajectory variational = simulate(system, excitation, start, options);
   ASSERT_EQ(variational.outcome, Outcome::completed) << variational.why;
   options.integrator = Integrator::cvode;
-  const Trajectory reference = simulate(arm, excitation, start, options);
+  const Trajectory reference = simulate(system, excitation, start, options);
   ASSERT_EQ(reference.outcome, Outcome::completed) << reference.why;
   EXPECT_LT((variational.q - reference.q).cwiseAbs().maxCoeff(), 0.01);  // 0.6 deg
 }
 
 TEST_F(UpperLimb, EllipsoidsAndToriNeedNoOption) {
-  const MusculoskeletalSystem arm(model_, {{{"elbow_flexion"}, {}}, {}, {}});
-  for (const std::string& warning : arm.warnings()) ADD_FAILURE() << warning;
+  const MusculoskeletalSystem system(model_, {{{"elbow_flexion"}, {}}, {}, {}});
+  for (const std::string& warning : system.warnings()) ADD_FAILURE() << warning;
 }
 
 TEST_F(UpperLimb, WritingItBackAndReadingItAgainChangesNothing) {

@@ -10,10 +10,11 @@
 int main(int count, char** arguments) try {
   if (count != 3) return 2;
   const bio::Model model = bio::readOsim(arguments[1]);
-  const bio::MusculoskeletalSystem arm(model, {.skeleton = {.freeCoordinates = {"elbow_flexion"}}});
+  const bio::MusculoskeletalSystem system(model,
+                                          {.skeleton = {.freeCoordinates = {"elbow_flexion"}}});
   const bio::Trial trial = bio::readTrial(arguments[2], model);
   const bio::TrialReplay replay =
-      bio::replayTrial(arm, trial, {}, bio::beginningOf(trial, model, arm, {}));
+      bio::replayTrial(system, trial, {}, bio::beginningOf(trial, model, system, {}));
   std::printf("FisherHill %s: rms_error_deg %.6f\n", info::version(),
               replay.errors.front().second.rms * 180 / std::numbers::pi);
   return replay.motion.outcome == bio::Outcome::completed ? 0 : 1;

@@ -16,8 +16,8 @@ const ParameterCatalogue& elbowCatalogue() {
   static const Model model = bio::readOsim(FISHERHILL_SOURCE_DIR "/models/elbow8.osim");
   bio::SystemOptions options;
   options.skeleton.freeCoordinates = {"elbow_flexion"};
-  static const MusculoskeletalSystem arm(model, options);
-  static const ParameterCatalogue catalogue(model, arm, {Eigen::VectorXd::Constant(1, 0.5), {}});
+  static const MusculoskeletalSystem system(model, options);
+  static const ParameterCatalogue catalogue(model, system, {Eigen::VectorXd::Constant(1, 0.5), {}});
   return catalogue;
 }
 

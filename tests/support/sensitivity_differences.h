@@ -24,8 +24,8 @@ struct DiscoveryProblem {
 };
 
 /// All that a simulation gives, one below the other.
-inline Eigen::VectorXd everything(const MusculoskeletalSystem& arm, const Trajectory& motion) {
-  const MuscleReport report = reportMuscles(arm, motion);
+inline Eigen::VectorXd everything(const MusculoskeletalSystem& system, const Trajectory& motion) {
+  const MuscleReport report = reportMuscles(system, motion);
   Eigen::VectorXd all(motion.q.size() + motion.qDot.size() + motion.fibreLength.size() +
                       motion.activation.size() + report.tendonForce.size() +
                       motion.reaction.size());
@@ -69,18 +69,18 @@ Eigen::VectorXd fourthOrderDifference(const F& f, const ModelParameter& paramete
 
 /// Compares with differences at five steps; for each quantity the finer one of the two neighbours
 /// that agree best with each other counts, whatever the sensitivities say.
-inline DiscoveryProblem compareWithDifferences(const MusculoskeletalSystem& arm,
-                                               const SystemOptions& armOptions,
+inline DiscoveryProblem compareWithDifferences(const MusculoskeletalSystem& system,
+                                               const SystemOptions& systemOptions,
                                                const ExcitationSignal& excitation,
                                                const ParameterCatalogue& catalogue,
                                                const std::vector<std::size_t>& wanted,
                                                SimulationOptions options) {
   options.newtonTolerance = 1e-12;
   const SensitivityTrajectory s = simulateWithSensitivities(
-      arm, catalogue, catalogue.nominal(), wanted, excitation, {options, true, true});
+      system, catalogue, catalogue.nominal(), wanted, excitation, {options, true, true});
   const Eigen::Index K = s.motion.q.cols();
   const Eigen::Index motionRows = 2 * s.motion.q.size();
-  const Eigen::VectorXd values = everything(arm, s.motion);
+  const Eigen::VectorXd values = everything(system, s.motion);
   constexpr std::size_t steps = 5;
   std::vector<std::array<Eigen::VectorXd, steps>> differences(wanted.size());
   info::parallelFor(static_cast<int>(wanted.size()), 0, [&](int index) {
@@ -88,7 +88,7 @@ inline DiscoveryProblem compareWithDifferences(const MusculoskeletalSystem& arm,
     const ModelParameter& parameter = catalogue.parameters()[wanted[j]];
     const auto simulated = [&](double value) {
       const auto setting = catalogue.at({wanted[j]}, Eigen::VectorXd::Constant(1, value));
-      const MusculoskeletalSystem changed(setting.model, armOptions);
+      const MusculoskeletalSystem changed(setting.model, systemOptions);
       return everything(changed, simulateSetting(changed, setting, excitation, options));
     };
     // the largest step moves the arm by about 1e-4 rad

@@ -13,16 +13,16 @@ struct ShippedElbow {
   explicit ShippedElbow(const std::string& modelName = "elbow8",
                         const std::string& trialName = "curl_slow", EmgMapping mapping = {})
       : model(readOsim(root() + "/models/" + modelName + ".osim")),
-        arm(model, options()),
+        system(model, options()),
         trial(readTrial(root() + "/emg_data/" + trialName + ".sto", model)),
-        excitation(excitationOf(trial, arm)),
-        catalogue(model, arm, {startCoordinates(trial, arm, {}), {}}, mapping) {}
+        excitation(excitationOf(trial, system)),
+        catalogue(model, system, {startCoordinates(trial, system, {}), {}}, mapping) {}
 
   static std::string root() { return FISHERHILL_SOURCE_DIR; }
   static SystemOptions options() { return {{{"elbow_flexion"}, {}}, {}, {}}; }
 
   Model model;
-  MusculoskeletalSystem arm;
+  MusculoskeletalSystem system;
   Trial trial;
   ExcitationSignal excitation;
   ParameterCatalogue catalogue;

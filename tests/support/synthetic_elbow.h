@@ -15,7 +15,7 @@ namespace bio::fixtures {
 struct SyntheticElbow {
   SyntheticElbow()
       : model(readOsim(std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8.osim")),
-        arm(model, options()) {}
+        system(model, options()) {}
 
   static SystemOptions options() { return {{{"elbow_flexion"}, {}}, {}, {}}; }
 
@@ -30,10 +30,10 @@ struct SyntheticElbow {
     while (rows < result.times.size() && result.times[rows] <= duration + 1e-9) ++rows;
     result.times.conservativeResize(rows);
     result.excitations.conservativeResize(rows, Eigen::NoChange);
-    const ExcitationSignal signal = excitationOf(result, arm);
+    const ExcitationSignal signal = excitationOf(result, system);
     const StartPoint start{Eigen::VectorXd::Constant(1, startDegrees / 180 * 3.141592653589793),
                            {}};
-    const ParameterCatalogue catalogue(model, arm, start);
+    const ParameterCatalogue catalogue(model, system, start);
     std::vector<std::size_t> selection;
     std::vector<double> values;
     for (const auto& [name, value] : truth) {
@@ -59,7 +59,7 @@ struct SyntheticElbow {
 
   /// Of a parameter in the model.
   double valueOf(const std::string& parameter) const {
-    const ParameterCatalogue catalogue(model, arm, {arm.skeleton().defaultValues(), {}});
+    const ParameterCatalogue catalogue(model, system, {system.skeleton().defaultValues(), {}});
     return catalogue.parameters()[catalogue.find(parameter)].value;
   }
 
@@ -74,7 +74,7 @@ struct SyntheticElbow {
   }
 
   Model model;
-  MusculoskeletalSystem arm;
+  MusculoskeletalSystem system;
 };
 
 }  // namespace bio::fixtures

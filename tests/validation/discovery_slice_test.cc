@@ -32,7 +32,7 @@ OnReducedElbow verdictOnReducedElbow(const reduced::Plan& plan, bool leaveOut) {
   const std::vector<std::string> lacking = leaveOut ? set.explaining() : std::vector<std::string>{};
   const reduced::Elbow elbow(std::move(set.trials), lacking);
   info::discover::Options options;
-  options.outputSd = set.recipe.outputNoise;
+  options.sds = set.recipe.outputNoise;
   options.latentTolerance = 0.02;
   options.heldOut = {plan.trials - 1};
   const auto begin = std::chrono::steady_clock::now();

@@ -54,16 +54,16 @@ std::string simulated(const bio::Model& model, const std::string& trialFile) {
   }
   if (options.skeleton.freeCoordinates.empty())
     options.skeleton.freeCoordinates = {"elbow_flexion"};
-  const bio::MusculoskeletalSystem arm(model, options);
+  const bio::MusculoskeletalSystem system(model, options);
   const bio::Trial trial =
       bio::readTrial(trialFile, model, {.ignoreExtra = true, .baseline = 0.01});
-  const bio::ExcitationSignal excitation = excitationOf(trial, arm);
+  const bio::ExcitationSignal excitation = excitationOf(trial, system);
   const bio::SystemState start =
-      initialState(arm, startCoordinates(trial, arm, {}), excitation, trial.times[0]);
+      initialState(system, startCoordinates(trial, system, {}), excitation, trial.times[0]);
   bio::SimulationOptions simulation;
   simulation.startTime = trial.times[0];
   simulation.duration = 0.3;
-  const bio::Trajectory t = simulate(arm, excitation, start, simulation);
+  const bio::Trajectory t = simulate(system, excitation, start, simulation);
   const bool finite = t.q.allFinite() && t.qDot.allFinite() && t.activation.allFinite() &&
                       t.fibreLength.allFinite();
   if (!finite) return "finding: numbers that are not finite";

@@ -140,9 +140,9 @@ int main(int argc, char** argv) {
     std::mt19937_64 random(seed);
     Draw draw{random};
     try {
-      const bio::MusculoskeletalSystem arm(randomModel(model, draw), options);
-      const bio::ExcitationSignal excitation = randomExcitation(arm.numMuscles(), draw);
-      simulated(arm, excitation, 0.2 + 1.8 * draw.unit(), tally, seed);
+      const bio::MusculoskeletalSystem system(randomModel(model, draw), options);
+      const bio::ExcitationSignal excitation = randomExcitation(system.numMuscles(), draw);
+      simulated(system, excitation, 0.2 + 1.8 * draw.unit(), tally, seed);
     } catch (const bio::NoStaticEquilibrium&) {
       ++tally.ends["has no static equilibrium at the start"];
     } catch (const std::invalid_argument& refusal) {

@@ -15,9 +15,9 @@ namespace {
 /// Rows of the reference: cubics between them are right to far below a microdegree.
 constexpr double referenceInterval = 5e-4;  ///< [s]
 
-std::vector<Eigen::Index> rotationsOf(const MusculoskeletalSystem& arm) {
+std::vector<Eigen::Index> rotationsOf(const MusculoskeletalSystem& system) {
   std::vector<Eigen::Index> rotations;
-  const auto& coordinates = arm.skeleton().coordinates();
+  const auto& coordinates = system.skeleton().coordinates();
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     if (coordinates[i].isRotation) rotations.push_back(static_cast<Eigen::Index>(i));
   }
@@ -39,13 +39,13 @@ double between(const Trajectory& motion, Eigen::Index row, std::size_t k, double
 }
 
 /// Time of the first row that is further than `limit` [rad] from the reference.
-double firstBeyond(const MusculoskeletalSystem& arm, const Trajectory& motion,
+double firstBeyond(const MusculoskeletalSystem& system, const Trajectory& motion,
                    const Trajectory& reference, double limit) {
   Trajectory row;
   for (std::size_t k = 0; k < motion.time.size(); ++k) {
     row.time = {motion.time[k]};
     row.q = motion.q.col(static_cast<Eigen::Index>(k));
-    if (sd(arm, row, reference).largest > limit) return motion.time[k];
+    if (sd(system, row, reference).largest > limit) return motion.time[k];
   }
   return motion.time.back();
 }
@@ -91,9 +91,9 @@ void mustBeUsable(const CompareOptions& options) {
 
 }  // namespace
 
-Deviation sd(const MusculoskeletalSystem& arm, const Trajectory& motion,
+Deviation sd(const MusculoskeletalSystem& system, const Trajectory& motion,
              const Trajectory& reference) {
-  const std::vector<Eigen::Index> rotations = rotationsOf(arm);
+  const std::vector<Eigen::Index> rotations = rotationsOf(system);
   constexpr double sameTime = 1e-9;  // [s]
   Deviation result;
   double sum = 0;
@@ -132,17 +132,17 @@ ConvergedReference Runs::makeReference() const {
     SimulationOptions simulation = simulationOptions(Integrator::cvode, referenceInterval);
     simulation.relativeTolerance = tolerance;
     simulation.absoluteTolerance = tolerance / 100;
-    return simulate(*arm_, *excitation_, *start_, simulation);
+    return simulate(*system_, *excitation_, *start_, simulation);
   };
   const Trajectory looser = run(reference.looserTolerance);
   reference.motion =
       looser.outcome == Outcome::completed ? run(reference.relativeTolerance) : looser;
   if (!reference.completed()) return reference;
-  reference.problem = sd(*arm_, looser, reference.motion);
+  reference.problem = sd(*system_, looser, reference.motion);
   if (reference.motion.time.size() >= 5) {
     // a cubic's error falls with the fourth power; it is 0 at the rows that were kept
     reference.interpolationError =
-        sd(*arm_, reference.motion, thinned(reference.motion)).rms * std::numbers::sqrt2 / 16;
+        sd(*system_, reference.motion, thinned(reference.motion)).rms * std::numbers::sqrt2 / 16;
   }
   confirm(reference);
   return reference;
@@ -163,13 +163,13 @@ void Runs::confirm(ConvergedReference& reference) const {
       reference.whyDisputed = fmt::format("vi at {:g} s: {}", step, motion.why);
       continue;
     }
-    reference.second = sd(*arm_, motion, reference.motion);
+    reference.second = sd(*system_, motion, reference.motion);
     if (reference.second.rms < limit) return;
     reference.whyDisputed = fmt::format(
         "cvode and vi at {:g} s differ by {:.3g} deg RMS, and by more than {:.2g} deg from {:.4g} "
         "s on",
         step, reference.second.rms / degree, limit / degree,
-        firstBeyond(*arm_, motion, reference.motion, limit));
+        firstBeyond(*system_, motion, reference.motion, limit));
   }
 }
 
@@ -185,7 +185,7 @@ SimulationOptions Runs::simulationOptions(Integrator integrator, double step) co
 }
 
 Trajectory Runs::run(Integrator integrator, double step) const {
-  return simulate(*arm_, *excitation_, *start_, simulationOptions(integrator, step));
+  return simulate(*system_, *excitation_, *start_, simulationOptions(integrator, step));
 }
 
 CompareCell Runs::cell(Integrator integrator, double step) const {
@@ -205,11 +205,11 @@ CompareCell Runs::cell(Integrator integrator, double step) const {
   }
   if (motion.outcome == Outcome::completed) {
     cell.failedAt = unknown;
-    cell.error = sd(*arm_, motion, reference_->motion);
-    cell.energyError = energyError(*arm_, motion);
+    cell.error = sd(*system_, motion, reference_->motion);
+    cell.energyError = energyError(*system_, motion);
     if (integrator == Integrator::rungeKutta4 && !(cell.error.rms < options_->usefulError)) {
       cell.outcome = Outcome::unstable;
-      cell.failedAt = firstBeyond(*arm_, motion, reference_->motion, options_->usefulError);
+      cell.failedAt = firstBeyond(*system_, motion, reference_->motion, options_->usefulError);
       constexpr double degree = std::numbers::pi / 180;
       cell.why = fmt::format(
           "unstable at t = {:.6g} s: bounded, but the error exceeds {:.3g} deg for the first time; "
@@ -242,10 +242,11 @@ CompareCell Runs::cell(Integrator integrator, double step) const {
 
 }  // namespace compare
 
-Comparison compareIntegrators(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
-                              const SystemState& start, const CompareOptions& options) {
+Comparison compareIntegrators(const MusculoskeletalSystem& system,
+                              const ExcitationSignal& excitation, const SystemState& start,
+                              const CompareOptions& options) {
   mustBeUsable(options);
-  rotationsOf(arm);
+  rotationsOf(system);
   const auto fixedStep = static_cast<std::size_t>(
       std::count_if(options.integrators.begin(), options.integrators.end(),
                     [](Integrator integrator) { return integrator != Integrator::cvode; }));
@@ -260,7 +261,7 @@ Comparison compareIntegrators(const MusculoskeletalSystem& arm, const Excitation
 
   advance(0);
   Comparison comparison;
-  const compare::Runs runs(arm, excitation, start, options, comparison.reference);
+  const compare::Runs runs(system, excitation, start, options, comparison.reference);
   comparison.reference = runs.makeReference();
   advance(2);
   if (!comparison.reference.completed()) return comparison;

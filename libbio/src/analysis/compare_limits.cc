@@ -13,7 +13,7 @@ namespace compare {
 std::string Runs::fault(Integrator integrator, double step) const {
   const Trajectory motion = run(integrator, step);
   if (motion.outcome != Outcome::completed) return motion.why;
-  const double rms = sd(*arm_, motion, reference_->motion).rms;
+  const double rms = sd(*system_, motion, reference_->motion).rms;
   if (rms < options_->usefulError) return "";
   constexpr double degree = std::numbers::pi / 180;
   return fmt::format("reaches the end with an RMS error of {:.3g} deg", rms / degree);
@@ -67,7 +67,7 @@ ObservedOrder Runs::order(Integrator integrator) const {
     const Trajectory motion = run(integrator, step);
     if (motion.outcome != Outcome::completed) continue;
     steps.push_back(step);
-    errors.push_back(sd(*arm_, motion, reference_->motion).rms);
+    errors.push_back(sd(*system_, motion, reference_->motion).rms);
   }
   ObservedOrder order = fitOrder(steps, errors, reference_->floor());
   order.integrator = integrator;

@@ -14,9 +14,9 @@ namespace {
 
 /// Numbers that every class has, in the order of the muscles.
 std::vector<std::size_t> sharedNumbers(const ParameterCatalogue& catalogue,
-                                       const MusculoskeletalSystem& arm) {
+                                       const MusculoskeletalSystem& system) {
   std::vector<std::size_t> selection;
-  for (const SystemMuscle& muscle : arm.muscles()) {
+  for (const SystemMuscle& muscle : system.muscles()) {
     for (const char* number :
          {"max_isometric_force", "optimal_fiber_length", "tendon_slack_length"}) {
       selection.push_back(catalogue.find(muscle.name + "." + number));
@@ -51,19 +51,19 @@ MuscleClassMotion motionOf(const Model& model, const SystemOptions& options,
                            const MuscleClassTrial& trial, const MuscleClassMotion* first,
                            Measured& measured) {
   MuscleClassMotion result;
-  const MusculoskeletalSystem arm(model, options);
+  const MusculoskeletalSystem system(model, options);
   const auto& [excitation, simulation] = trial.recorded;
-  const SystemState start = trial.recorded.startAt(arm, trial.start);
-  result.motion = simulate(arm, excitation, start, simulation);
+  const SystemState start = trial.recorded.startAt(system, trial.start);
+  result.motion = simulate(system, excitation, start, simulation);
   if (result.motion.outcome != Outcome::completed) return result;
   for (int repeat = 0; repeat < 4; ++repeat) {  // the least time: others use the machine
-    result.motion.wallSeconds = std::min(result.motion.wallSeconds,
-                                         simulate(arm, excitation, start, simulation).wallSeconds);
+    result.motion.wallSeconds = std::min(
+        result.motion.wallSeconds, simulate(system, excitation, start, simulation).wallSeconds);
   }
-  result.energyError = energyError(arm, result.motion);
-  if (first) result.difference = sd(arm, result.motion, first->motion);
-  const ParameterCatalogue catalogue(model, arm, trial.start);
-  const std::vector<std::size_t> selection = sharedNumbers(catalogue, arm);
+  result.energyError = energyError(system, result.motion);
+  if (first) result.difference = sd(system, result.motion, first->motion);
+  const ParameterCatalogue catalogue(model, system, trial.start);
+  const std::vector<std::size_t> selection = sharedNumbers(catalogue, system);
   const TrialPredictor predictor(catalogue, options, excitation, trial.coordinate, trial.times,
                                  selection, simulation);
   auto linearised = predictor.withSensitivities(catalogue.values(selection));
@@ -93,16 +93,16 @@ std::vector<MuscleClassMotion> compareMuscleClasses(const Model& model,
     Model changed = model;
     std::vector<std::string> lost = convertMuscles(changed, name).lost;
     Measured measured;
-    MuscleClassMotion one = motionOf(changed, options, trial, &all.front(), measured);
-    one.name = name;
-    one.lost = std::move(lost);
-    if (one.motion.outcome == Outcome::completed) {
+    MuscleClassMotion motion = motionOf(changed, options, trial, &all.front(), measured);
+    motion.name = name;
+    motion.lost = std::move(lost);
+    if (motion.motion.outcome == Outcome::completed) {
       const Eigen::VectorXd difference = measured.outputs - reference.outputs;
-      one.measured = rootMeanSquareOf(difference);
-      one.unexplained = rootMeanSquareOf(
+      motion.measured = rootMeanSquareOf(difference);
+      motion.unexplained = rootMeanSquareOf(
           unexplainedBy(reference.gamma, all.front().information, trial.noise, difference));
     }
-    all.push_back(std::move(one));
+    all.push_back(std::move(motion));
   }
   return all;
 }

@@ -6,13 +6,13 @@
 
 namespace bio::compare {
 
-/// One arm under one excitation, simulated as often as it takes.
+/// One system under one excitation, simulated as often as it takes.
 class Runs {
  public:
   /// Keeps references; `reference` may be filled later by makeReference().
-  Runs(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+  Runs(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
        const SystemState& start, const CompareOptions& options, const ConvergedReference& reference)
-      : arm_(&arm),
+      : system_(&system),
         excitation_(&excitation),
         start_(&start),
         options_(&options),
@@ -29,7 +29,7 @@ class Runs {
   Trajectory run(Integrator integrator, double step) const;
   std::string fault(Integrator integrator, double step) const;
 
-  const MusculoskeletalSystem* arm_;
+  const MusculoskeletalSystem* system_;
   const ExcitationSignal* excitation_;
   const SystemState* start_;
   const CompareOptions* options_;

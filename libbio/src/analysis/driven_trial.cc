@@ -31,9 +31,10 @@ std::vector<Course> coursesOf(const Trial& trial) {
 
 }  // namespace
 
-Table drivenTable(const Trial& trial, const MusculoskeletalSystem& arm, const EmgMapping& mapping) {
-  const std::vector<std::string> muscles = muscleNames(arm);
-  const ExcitationSignal driven = drivenExcitation(excitationOf(trial, arm), muscles, mapping);
+Table drivenTable(const Trial& trial, const MusculoskeletalSystem& system,
+                  const EmgMapping& mapping) {
+  const std::vector<std::string> muscles = muscleNames(system);
+  const ExcitationSignal driven = drivenExcitation(excitationOf(trial, system), muscles, mapping);
   const double first = trial.times[0], last = trial.times[trial.times.size() - 1];
   std::set<double> times(trial.times.begin(), trial.times.end());
   const std::vector<Course> courses = coursesOf(trial);
@@ -72,12 +73,12 @@ Table drivenTable(const Trial& trial, const MusculoskeletalSystem& arm, const Em
     }
   }
   for (const AppliedForce& push : trial.applied) {
-    const int index = arm.skeleton().indexOf(push.coordinate);
+    const int index = system.skeleton().indexOf(push.coordinate);
     if (!push.actuator.empty()) {
       table.columns.push_back(push.actuator);
       continue;
     }
-    const bool turns = arm.skeleton().coordinates()[static_cast<std::size_t>(index)].isRotation;
+    const bool turns = system.skeleton().coordinates()[static_cast<std::size_t>(index)].isRotation;
     table.columns.push_back(push.coordinate + (turns ? ".torque" : ".force"));
   }
   return table;

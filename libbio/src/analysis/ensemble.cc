@@ -63,32 +63,32 @@ bool changesExcitations(const ParameterCatalogue& catalogue,
 
 /// Parts of one simulation; no system if there is none with these parameters.
 struct SystemBatch::Draw {
-  std::unique_ptr<const MusculoskeletalSystem> arm;
+  std::unique_ptr<const MusculoskeletalSystem> system;
   std::unique_ptr<const ExcitationSignal> excitation;  ///< unless it is the nominal one
   SystemState start;
 };
 
-SystemBatch::SystemBatch(const ParameterCatalogue& catalogue, const SystemOptions& arm,
+SystemBatch::SystemBatch(const ParameterCatalogue& catalogue, const SystemOptions& system,
                          ExcitationSignal trial, const std::string& coordinate,
                          std::optional<MeasuredChannel> measured, std::vector<double> course,
                          std::vector<std::size_t> selection, const SimulationOptions& options)
     : catalogue_(&catalogue),
-      armOptions_(arm),
+      systemOptions_(system),
       trial_(std::move(trial)),
       measured_(std::move(measured)),
       course_(std::move(course)),
       selection_(std::move(selection)),
       options_(options),
-      arm_(catalogue.model(), arm),
-      driven_(drivenExcitation(trial_, muscleNames(arm_), catalogue.nominal().mapping)),
+      system_(catalogue.model(), system),
+      driven_(drivenExcitation(trial_, muscleNames(system_), catalogue.nominal().mapping)),
       drawsEmg_(changesExcitations(catalogue, selection_)),
       shaped_(shapedMuscles(catalogue, selection_)),
-      coordinate_(arm_.skeleton().indexOf(coordinate)) {
+      coordinate_(system_.skeleton().indexOf(coordinate)) {
   if (coordinate_ < 0) {
     throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", coordinate));
   }
-  const SystemState start = startOf(arm_, catalogue.nominal(), driven_, options_.startTime);
-  const LaneJob own{&arm_, &driven_, &start};
+  const SystemState start = startOf(system_, catalogue.nominal(), driven_, options_.startTime);
+  const LaneJob own{&system_, &driven_, &start};
   const Trajectory motion = simulateTogether({&own, 1}, options_).front();
   if (motion.outcome != Outcome::completed) {
     throw std::invalid_argument(
@@ -105,7 +105,7 @@ EnsembleRun SystemBatch::describe(const Trajectory& motion) const {
   EnsembleRun run =
       notFinished(name(motion.outcome), std::numeric_limits<double>::quiet_NaN(), course_.size());
   const auto q = motion.q.row(coordinate_);
-  if (measured_) run.rmsError = compareWithMeasured(arm_, motion, *measured_).rms;
+  if (measured_) run.rmsError = compareWithMeasured(system_, motion, *measured_).rms;
   run.rmsFromNominal =
       std::sqrt((q - nominalMotion_).squaredNorm() / static_cast<double>(q.size()));
   run.last = q[q.size() - 1];
@@ -123,15 +123,15 @@ SystemBatch::Draw SystemBatch::prepare(const Eigen::VectorXd& theta) const {
   const ParameterCatalogue::Setting setting = catalogue_->at(selection_, theta);
   try {
     Draw draw;
-    auto arm =
-        std::make_unique<const MusculoskeletalSystem>(setting.model, armOptions_, arm_, shaped_);
+    auto system = std::make_unique<const MusculoskeletalSystem>(setting.model, systemOptions_,
+                                                                system_, shaped_);
     if (drawsEmg_) {
       draw.excitation = std::make_unique<const ExcitationSignal>(
-          drivenExcitation(trial_, muscleNames(*arm), setting.mapping));
+          drivenExcitation(trial_, muscleNames(*system), setting.mapping));
     }
     draw.start =
-        startOf(*arm, setting, draw.excitation ? *draw.excitation : driven_, options_.startTime);
-    draw.arm = std::move(arm);
+        startOf(*system, setting, draw.excitation ? *draw.excitation : driven_, options_.startTime);
+    draw.system = std::move(system);
     return draw;
   } catch (const std::logic_error&) {  // outside the model's domain
   } catch (const NoStaticEquilibrium&) {
@@ -153,9 +153,9 @@ std::vector<EnsembleRun> SystemBatch::run(std::span<const Eigen::VectorXd> theta
   for (const Eigen::VectorXd& theta : thetas) draws.push_back(prepare(theta));
   for (std::size_t i = 0; i < draws.size(); ++i) {
     const Draw& draw = draws[i];
-    if (!draw.arm) continue;
+    if (!draw.system) continue;
     jobs.push_back(
-        {draw.arm.get(), draw.excitation ? draw.excitation.get() : &driven_, &draw.start});
+        {draw.system.get(), draw.excitation ? draw.excitation.get() : &driven_, &draw.start});
     places.push_back(i);
   }
   const auto simulate = [&](std::size_t first, std::size_t count) {

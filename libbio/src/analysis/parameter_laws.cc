@@ -105,13 +105,14 @@ void spreadAndCheck(const LawRequest& request, ParameterLaws& laws) {
     throw std::invalid_argument(
         fmt::format("{}spread = {}, must be > 0", request.optionPrefix, request.spread));
   }
-  for (DrawnParameter& one : laws.parameters) {
-    one.law.sd *= request.spread;
+  for (DrawnParameter& parameter : laws.parameters) {
+    parameter.law.sd *= request.spread;
     try {
-      (void)one.law.quantile(0.5);
+      (void)parameter.law.quantile(0.5);
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(
-          fmt::format("{} [{}]: {}", one.name, one.unit.empty() ? "1" : one.unit, error.what()));
+      throw std::invalid_argument(fmt::format("{} [{}]: {}", parameter.name,
+                                              parameter.unit.empty() ? "1" : parameter.unit,
+                                              error.what()));
     }
   }
 }

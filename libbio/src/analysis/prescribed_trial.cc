@@ -42,14 +42,14 @@ MeasuredChannel smoothedCourse(const MeasuredChannel& course, double cutoff) {
 
 }  // namespace
 
-PrescribedMotion prescribedMotionOf(const Trial& trial, const MusculoskeletalSystem& arm) {
+PrescribedMotion prescribedMotionOf(const Trial& trial, const MusculoskeletalSystem& system) {
   PrescribedMotion motion;
-  for (const int k : arm.prescribed()) {
-    const std::string& name = arm.skeleton().coordinates()[static_cast<std::size_t>(k)].name;
+  for (const int k : system.prescribed()) {
+    const std::string& name = system.skeleton().coordinates()[static_cast<std::size_t>(k)].name;
     const auto at =
         std::find_if(trial.prescribed.begin(), trial.prescribed.end(),
                      [&](const MeasuredChannel& course) { return course.what.of == name; });
-    if (const Function* own = arm.courseOf(k); own && at == trial.prescribed.end()) {
+    if (const Function* own = system.courseOf(k); own && at == trial.prescribed.end()) {
       motion.add(k, *own);
       continue;
     }

@@ -15,11 +15,11 @@
 
 namespace bio {
 
-ExcitationSignal excitationOf(const Trial& trial, const MusculoskeletalSystem& arm) {
-  const auto n = static_cast<Eigen::Index>(arm.numMuscles());
+ExcitationSignal excitationOf(const Trial& trial, const MusculoskeletalSystem& system) {
+  const auto n = static_cast<Eigen::Index>(system.numMuscles());
   Eigen::MatrixXd values(trial.times.size(), n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const std::string& name = arm.muscles()[static_cast<std::size_t>(i)].name;
+    const std::string& name = system.muscles()[static_cast<std::size_t>(i)].name;
     const auto at = std::find(trial.muscles.begin(), trial.muscles.end(), name);
     if (at == trial.muscles.end()) {
       throw std::invalid_argument(
@@ -30,14 +30,14 @@ ExcitationSignal excitationOf(const Trial& trial, const MusculoskeletalSystem& a
   return {std::vector<double>(trial.times.begin(), trial.times.end()), values};
 }
 
-ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& arm) {
+ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& system) {
   if (trial.applied.empty()) return {};
   Eigen::MatrixXd values =
-      Eigen::MatrixXd::Zero(trial.times.size(), arm.skeleton().numCoordinates());
+      Eigen::MatrixXd::Zero(trial.times.size(), system.skeleton().numCoordinates());
   const std::vector<double> times(trial.times.begin(), trial.times.end());
   std::vector<ExternalForce::Control> controls;
   for (const AppliedForce& applied : trial.applied) {
-    const int index = arm.skeleton().indexOf(applied.coordinate);
+    const int index = system.skeleton().indexOf(applied.coordinate);
     if (index < 0 && !applied.actuator.empty()) continue;  // on a coordinate that is held
     if (index < 0) {
       throw std::invalid_argument(
@@ -67,12 +67,12 @@ SystemState RecordedTrial::startAt(const MusculoskeletalSystem& system,
   return state;
 }
 
-Eigen::VectorXd startCoordinates(const Trial& trial, const MusculoskeletalSystem& arm,
+Eigen::VectorXd startCoordinates(const Trial& trial, const MusculoskeletalSystem& system,
                                  const std::map<std::string, double>& given) {
-  const auto& free = arm.skeleton().coordinates();
+  const auto& free = system.skeleton().coordinates();
   for (const auto& [name, value] : given) {
-    const int index = arm.skeleton().indexOf(name);
-    if (index >= 0 && arm.isPrescribed(index)) {
+    const int index = system.skeleton().indexOf(name);
+    if (index >= 0 && system.isPrescribed(index)) {
       throw std::invalid_argument(
           fmt::format("start of '{}': its motion is prescribed, must not be given", name));
     }
@@ -94,7 +94,7 @@ Eigen::VectorXd startCoordinates(const Trial& trial, const MusculoskeletalSystem
     const auto at = given.find(free[i].name);
     q[static_cast<Eigen::Index>(i)] = at != given.end() ? at->second : value;
   }
-  if (!arm.prescribed().empty()) prescribedMotionOf(trial, arm).place(trial.times[0], q);
+  if (!system.prescribed().empty()) prescribedMotionOf(trial, system).place(trial.times[0], q);
   return q;
 }
 
@@ -103,24 +103,25 @@ const char* name(TrialBeginning::From from) {
   return names[static_cast<int>(from)];
 }
 
-TrialBeginning beginningOf(const Trial& trial, const Model& model, const MusculoskeletalSystem& arm,
+TrialBeginning beginningOf(const Trial& trial, const Model& model,
+                           const MusculoskeletalSystem& system,
                            const std::map<std::string, double>& given) {
   using From = TrialBeginning::From;
   TrialBeginning beginning;
-  beginning.point.q = startCoordinates(trial, arm, given);
+  beginning.point.q = startCoordinates(trial, system, given);
   beginning.point.qDot = beginning.point.speedSd = Eigen::VectorXd::Zero(beginning.point.q.size());
-  if (!arm.prescribed().empty()) {
+  if (!system.prescribed().empty()) {
     Eigen::VectorXd q = beginning.point.q;
-    prescribedMotionOf(trial, arm).place(trial.times[0], q, beginning.point.qDot);
+    prescribedMotionOf(trial, system).place(trial.times[0], q, beginning.point.qDot);
   }
   bool isMeasured = false, isFitted = false;
   for (Eigen::Index i = 0; i < beginning.point.q.size(); ++i) {
-    const std::string& free = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].name;
-    if (given.contains(free) || arm.isPrescribed(static_cast<int>(i))) continue;
+    const std::string& free = system.skeleton().coordinates()[static_cast<std::size_t>(i)].name;
+    if (given.contains(free) || system.isPrescribed(static_cast<int>(i))) continue;
     const MeasuredChannel* measured = trial.measurementOf(ofCoordinate(free));
     if (measured && measured->values.size() > 0) {
       isMeasured = true;
-      const bool turns = arm.skeleton().coordinates()[static_cast<std::size_t>(i)].isRotation;
+      const bool turns = system.skeleton().coordinates()[static_cast<std::size_t>(i)].isRotation;
       beginning.point.speedSd[i] =
           std::abs(initialSpeedShown({measured->times.begin(), measured->times.end()},
                                      measured->values, turns ? 0.3 : 0.3 / 8));
@@ -181,9 +182,9 @@ MeasuredError errorOf(const Eigen::VectorXd& times, const Eigen::VectorXd& simul
 
 }  // namespace
 
-MeasuredError compareWithMeasured(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
+MeasuredError compareWithMeasured(const MusculoskeletalSystem& system, const Trajectory& trajectory,
                                   const MeasuredChannel& measured) {
-  const int index = arm.skeleton().indexOf(measured.what.of);
+  const int index = system.skeleton().indexOf(measured.what.of);
   if (index < 0) {
     throw std::invalid_argument(
         fmt::format("measured coordinate '{}' is not free", measured.what.of));
@@ -207,23 +208,23 @@ MeasuredError compareWithMeasured(const MusculoskeletalSystem& arm, const Trajec
   return error;
 }
 
-TrialReplay replayTrial(const MusculoskeletalSystem& arm, const Trial& trial,
+TrialReplay replayTrial(const MusculoskeletalSystem& system, const Trial& trial,
                         SimulationOptions options, TrialBeginning beginning) {
   TrialReplay replay;
-  RecordedTrial recorded = recordedTrial(trial, arm, std::move(options));
+  RecordedTrial recorded = recordedTrial(trial, system, std::move(options));
   replay.beginning = std::move(beginning);
-  replay.motion = simulate(arm, recorded.excitation, recorded.startAt(arm, replay.beginning.point),
-                           recorded.simulation);
+  replay.motion = simulate(system, recorded.excitation,
+                           recorded.startAt(system, replay.beginning.point), recorded.simulation);
   for (const MeasuredChannel& measured : trial.measured) {
     if (measured.times.size() == 0 || measured.times[0] > replay.motion.time.back()) continue;
     if (!measured.what.isCoordinate()) {
-      const ObservedMotion observed(arm, {{measured.what, measured.times}});
+      const ObservedMotion observed(system, {{measured.what, measured.times}});
       replay.channelErrors.push_back(
           {measured.what,
            errorOf(measured.times, observed.values(replay.motion), measured.values)});
-    } else if (arm.skeleton().indexOf(measured.what.of) >= 0) {
+    } else if (system.skeleton().indexOf(measured.what.of) >= 0) {
       replay.errors.emplace_back(measured.what.of,
-                                 compareWithMeasured(arm, replay.motion, measured));
+                                 compareWithMeasured(system, replay.motion, measured));
     }
   }
   recorded.simulation.progress = {};
@@ -231,11 +232,11 @@ TrialReplay replayTrial(const MusculoskeletalSystem& arm, const Trial& trial,
   return replay;
 }
 
-std::vector<std::string> rangeRemarks(const MusculoskeletalSystem& arm,
+std::vector<std::string> rangeRemarks(const MusculoskeletalSystem& system,
                                       const Trajectory& trajectory) {
   std::vector<std::string> remarks;
-  for (std::size_t i = 0; i < arm.skeleton().coordinates().size(); ++i) {
-    const Coordinate& c = arm.skeleton().coordinates()[i];
+  for (std::size_t i = 0; i < system.skeleton().coordinates().size(); ++i) {
+    const Coordinate& c = system.skeleton().coordinates()[i];
     const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
     const double margin = c.isRotation ? std::numbers::pi / 180 : 1e-3;
     const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
@@ -252,7 +253,8 @@ std::vector<std::string> rangeRemarks(const MusculoskeletalSystem& arm,
   return remarks;
 }
 
-std::optional<LeftRange> leftRange(const MusculoskeletalSystem& arm, const Trajectory& trajectory) {
+std::optional<LeftRange> leftRange(const MusculoskeletalSystem& system,
+                                   const Trajectory& trajectory) {
   std::optional<LeftRange> first;
   const auto look = [&](const std::string& name, const Eigen::VectorXd& values, double low,
                         double high, const std::function<std::string(double)>& sentence) {
@@ -263,8 +265,8 @@ std::optional<LeftRange> leftRange(const MusculoskeletalSystem& arm, const Traje
       return;
     }
   };
-  for (std::size_t i = 0; i < arm.skeleton().coordinates().size(); ++i) {
-    const Coordinate& c = arm.skeleton().coordinates()[i];
+  for (std::size_t i = 0; i < system.skeleton().coordinates().size(); ++i) {
+    const Coordinate& c = system.skeleton().coordinates()[i];
     const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
     const double margin = std::max(0.1 * (c.rangeMax - c.rangeMin), 1 / unit);
     const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
@@ -276,8 +278,8 @@ std::optional<LeftRange> leftRange(const MusculoskeletalSystem& arm, const Traje
           q.minCoeff() * unit, q.maxCoeff() * unit);
     });
   }
-  for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
-    const SystemMuscle& muscle = arm.muscles()[i];
+  for (std::size_t i = 0; i < system.numMuscles(); ++i) {
+    const SystemMuscle& muscle = system.muscles()[i];
     const Eigen::VectorXd l =
         trajectory.fibreLength.row(static_cast<Eigen::Index>(i)) * muscle.muscle.perFibre();
     look(muscle.name, l, 0.2, 2, [&](double time) {
@@ -290,9 +292,9 @@ std::optional<LeftRange> leftRange(const MusculoskeletalSystem& arm, const Traje
   return first;
 }
 
-Table statesTable(const Model& model, const MusculoskeletalSystem& arm,
+Table statesTable(const Model& model, const MusculoskeletalSystem& system,
                   const Trajectory& trajectory) {
-  const Skeleton& skeleton = arm.skeleton();
+  const Skeleton& skeleton = system.skeleton();
   const auto K = static_cast<Eigen::Index>(trajectory.time.size());
   Table table;
   table.name = "states";
@@ -322,8 +324,8 @@ Table statesTable(const Model& model, const MusculoskeletalSystem& arm,
       add(path + "/speed", speed);
     }
   }
-  for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
-    const std::string path = "/forceset/" + arm.muscles()[i].name;
+  for (std::size_t i = 0; i < system.numMuscles(); ++i) {
+    const std::string path = "/forceset/" + system.muscles()[i].name;
     const auto row = static_cast<Eigen::Index>(i);
     add(path + "/activation", trajectory.activation.row(row).transpose());
     add(path + "/fiber_length", trajectory.fibreLength.row(row).transpose());
@@ -335,21 +337,21 @@ Table statesTable(const Model& model, const MusculoskeletalSystem& arm,
   return table;
 }
 
-Table forcesTable(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
+Table forcesTable(const MusculoskeletalSystem& system, const Trajectory& trajectory,
                   const MuscleReport& report) {
   const auto K = static_cast<Eigen::Index>(trajectory.time.size());
   Table table;
   table.name = "tendon forces [N]";
   table.columns = {"time"};
-  for (const SystemMuscle& muscle : arm.muscles()) table.columns.push_back(muscle.name);
-  const auto prescribed = static_cast<Eigen::Index>(arm.prescribed().size());
+  for (const SystemMuscle& muscle : system.muscles()) table.columns.push_back(muscle.name);
+  const auto prescribed = static_cast<Eigen::Index>(system.prescribed().size());
   const Eigen::Index muscles = report.tendonForce.rows();
   table.values.resize(K, 1 + muscles + prescribed);
   table.values.col(0) = Eigen::Map<const Eigen::VectorXd>(trajectory.time.data(), K);
   table.values.middleCols(1, muscles) = report.tendonForce.transpose();
   for (Eigen::Index i = 0; i < prescribed; ++i) {
-    const int k = arm.prescribed()[static_cast<std::size_t>(i)];
-    table.columns.push_back(arm.skeleton().coordinates()[static_cast<std::size_t>(k)].name +
+    const int k = system.prescribed()[static_cast<std::size_t>(i)];
+    table.columns.push_back(system.skeleton().coordinates()[static_cast<std::size_t>(k)].name +
                             ".reaction");
     table.values.col(1 + muscles + i) = trajectory.reaction.row(k).transpose();
   }

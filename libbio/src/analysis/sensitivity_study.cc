@@ -16,8 +16,8 @@ std::vector<ObservedSeries> seriesOf(const std::vector<ChannelCandidate>& channe
                                      const std::vector<double>& times) {
   const auto n = static_cast<Eigen::Index>(times.size());
   std::vector<ObservedSeries> series;
-  for (const ChannelCandidate& one : channels) {
-    series.push_back({one.what, Eigen::VectorXd::Map(times.data(), n)});
+  for (const ChannelCandidate& candidate : channels) {
+    series.push_back({candidate.what, Eigen::VectorXd::Map(times.data(), n)});
   }
   return series;
 }
@@ -38,17 +38,18 @@ void requireTrials(const std::vector<StudiedTrial>& trials) {
 
 }  // namespace
 
-StudiedTrial studiedTrial(const Trial& trial, const Model& model, const MusculoskeletalSystem& arm,
-                          const StartPoint& start, SimulationOptions simulation) {
+StudiedTrial studiedTrial(const Trial& trial, const Model& model,
+                          const MusculoskeletalSystem& system, const StartPoint& start,
+                          SimulationOptions simulation) {
   std::vector<double> times =
-      observedTimes(trial, arm.skeleton().coordinates().front().name, simulation.step);
-  return {trial.file, ParameterCatalogue(model, arm, start),
-          recordedTrial(trial, arm, std::move(simulation)), std::move(times)};
+      observedTimes(trial, system.skeleton().coordinates().front().name, simulation.step);
+  return {trial.file, ParameterCatalogue(model, system, start),
+          recordedTrial(trial, system, std::move(simulation)), std::move(times)};
 }
 
 std::vector<ChannelCandidate> observedChannels(
     const std::vector<std::pair<std::string, double>>& named, const Model& model,
-    const MusculoskeletalSystem& arm) {
+    const MusculoskeletalSystem& system) {
   std::vector<ChannelCandidate> channels;
   for (const auto& [name, sd] : named) {
     ChannelCandidate channel{{Observable::Kind::coordinate, name, 0}, sd};
@@ -63,7 +64,7 @@ std::vector<ChannelCandidate> observedChannels(
     }
     channels.push_back(std::move(channel));
   }
-  (void)ObservedMotion(arm, seriesOf(channels, {}));  // throws for what cannot be observed
+  (void)ObservedMotion(system, seriesOf(channels, {}));  // throws for what cannot be observed
   return channels;
 }
 
@@ -107,32 +108,32 @@ LocalSensitivity localSensitivity(const std::vector<StudiedTrial>& trials,
   return found;
 }
 
-std::vector<ChannelCandidate> furtherChannels(const MusculoskeletalSystem& arm,
+std::vector<ChannelCandidate> furtherChannels(const MusculoskeletalSystem& system,
                                               const SensitivityQuestion& question) {
   std::vector<Observable> seen;
-  for (const ChannelCandidate& one : question.observed) seen.push_back(one.what);
+  for (const ChannelCandidate& candidate : question.observed) seen.push_back(candidate.what);
   if (question.observed.empty()) {
     seen.push_back({Observable::Kind::coordinate, question.coordinate, 0});
   }
-  std::vector<ChannelCandidate> candidates = usualChannels(arm);
-  std::erase_if(candidates, [&](const ChannelCandidate& one) {
-    return std::find(seen.begin(), seen.end(), one.what) != seen.end();
+  std::vector<ChannelCandidate> candidates = usualChannels(system);
+  std::erase_if(candidates, [&](const ChannelCandidate& candidate) {
+    return std::find(seen.begin(), seen.end(), candidate.what) != seen.end();
   });
   return candidates;
 }
 
 std::vector<ChannelGain> furtherGains(const std::vector<StudiedTrial>& trials,
-                                      const MusculoskeletalSystem& arm,
+                                      const MusculoskeletalSystem& system,
                                       const SensitivityQuestion& question,
                                       const ParameterInformation& known) {
   requireTrials(trials);
-  const std::vector<ChannelCandidate> candidates = furtherChannels(arm, question);
+  const std::vector<ChannelCandidate> candidates = furtherChannels(system, question);
   std::vector<Eigen::MatrixXd> information;
   for (const StudiedTrial& trial : trials) {
-    const auto motion = simulateWithSensitivities(arm, trial.catalogue, trial.catalogue.nominal(),
-                                                  question.selection, trial.recorded.excitation,
-                                                  {trial.recorded.simulation, true, true});
-    const auto more = informationOf(arm, candidates, trial.times, motion);
+    const auto motion = simulateWithSensitivities(
+        system, trial.catalogue, trial.catalogue.nominal(), question.selection,
+        trial.recorded.excitation, {trial.recorded.simulation, true, true});
+    const auto more = informationOf(system, candidates, trial.times, motion);
     for (std::size_t c = 0; c < more.size(); ++c) {
       if (information.size() == c) {
         information.push_back(more[c]);
@@ -167,21 +168,21 @@ Sweep parameterSweep(const StudiedTrial& trial, const SystemOptions& options, st
   requireWithinBounds(parameter, values);
   const auto simulated = [&](double value) {
     const auto setting = trial.catalogue.at({index}, Eigen::VectorXd::Constant(1, value));
-    const MusculoskeletalSystem arm(setting.model, options);
-    return simulateSetting(arm, setting, trial.recorded.excitation, trial.recorded.simulation);
+    const MusculoskeletalSystem system(setting.model, options);
+    return simulateSetting(system, setting, trial.recorded.excitation, trial.recorded.simulation);
   };
   Sweep result{parameter, simulated(parameter.value), {}};
   for (const double value : values) {
     if (progress) {
       progress(static_cast<double>(result.runs.size()) / static_cast<double>(values.size()));
     }
-    SweepRun one{value, simulated(value), 0, 0};
-    const Eigen::Index rows = std::min(one.motion.q.cols(), result.nominal.q.cols());
+    SweepRun run{value, simulated(value), 0, 0};
+    const Eigen::Index rows = std::min(run.motion.q.cols(), result.nominal.q.cols());
     const Eigen::RowVectorXd change =
-        one.motion.q.row(0).head(rows) - result.nominal.q.row(0).head(rows);
-    one.rms = std::sqrt(change.squaredNorm() / static_cast<double>(rows));
-    one.largest = change.cwiseAbs().maxCoeff();
-    result.runs.push_back(std::move(one));
+        run.motion.q.row(0).head(rows) - result.nominal.q.row(0).head(rows);
+    run.rms = std::sqrt(change.squaredNorm() / static_cast<double>(rows));
+    run.largest = change.cwiseAbs().maxCoeff();
+    result.runs.push_back(std::move(run));
   }
   return result;
 }

@@ -20,11 +20,11 @@ void requireTransferable(const TrialSet& training, const TrialSet& heldOut) {
     throw std::invalid_argument("held-out trials must have the same common parameters");
   }
   for (const std::size_t index : training.selection()) {
-    const ModelParameter& one = training.catalogue().parameters()[index];
-    if (std::holds_alternative<InitialTarget>(one.targets.front())) {
+    const ModelParameter& parameter = training.catalogue().parameters()[index];
+    if (std::holds_alternative<InitialTarget>(parameter.targets.front())) {
       throw std::invalid_argument(fmt::format(
           "parameter '{}' belongs to one trial and cannot be transferred to held-out trials",
-          one.name));
+          parameter.name));
     }
   }
 }

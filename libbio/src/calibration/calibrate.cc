@@ -180,7 +180,7 @@ class Calibrator {
         options_.from ? std::vector<VectorXd>() : ledFrom(valuesOf(asked_), estimate);
     const MatrixXd guess = best(led);
     std::vector<ResidualNoise> first = channels_.of(guess, 0);
-    for (ResidualNoise& one : first) one.effective = one.sd;  // white until there is a fit
+    for (ResidualNoise& noise : first) noise.effective = noise.sd;  // white until there is a fit
     setNoise(std::move(first));
     {
       const info::MultiStart found = info::estimateFromStarts(
@@ -322,14 +322,14 @@ class Calibrator {
         return;
       }
       if (std::count(held_.begin(), held_.end(), profiled_[k]) > 0) continue;
-      CalibratedParameter& one = result_.parameters[profiled_[k]];
-      const double width = std::isfinite(one.sd) ? one.sd : one.known;
+      CalibratedParameter& parameter = result_.parameters[profiled_[k]];
+      const double width = std::isfinite(parameter.sd) ? parameter.sd : parameter.known;
       try {
-        one.profile = info::profileInterval(least, estimate_, static_cast<Index>(profiled_[k]),
-                                            width, estimateOptions());
+        parameter.profile = info::profileInterval(
+            least, estimate_, static_cast<Index>(profiled_[k]), width, estimateOptions());
       } catch (const std::domain_error& error) {
         result_.remarks.push_back(
-            fmt::format("no profile likelihood of {}: {}", one.asked.name, error.what()));
+            fmt::format("no profile likelihood of {}: {}", parameter.asked.name, error.what()));
       }
     }
   }
@@ -356,11 +356,11 @@ class Calibrator {
     }
     result_.bootstrapConverged = spread.converged;
     for (Index i = 0; i < spread.sd.size(); ++i) {
-      CalibratedParameter& one = result_.parameters[static_cast<std::size_t>(i)];
-      if (!one.identifiable) continue;
-      one.bootstrapSd = spread.sd[i];
-      one.bootstrapLower = spread.intervals(i, 0);
-      one.bootstrapUpper = spread.intervals(i, 1);
+      CalibratedParameter& parameter = result_.parameters[static_cast<std::size_t>(i)];
+      if (!parameter.identifiable) continue;
+      parameter.bootstrapSd = spread.sd[i];
+      parameter.bootstrapLower = spread.intervals(i, 0);
+      parameter.bootstrapUpper = spread.intervals(i, 1);
     }
   }
 

@@ -13,12 +13,13 @@ using Eigen::VectorXd;
 
 namespace {
 
-StepChange changeOfHalving(const Model& model, const SystemOptions& arm, const TrialSet& training,
-                           const CalibrationOptions& options, const Calibration& calibration) {
+StepChange changeOfHalving(const Model& model, const SystemOptions& system,
+                           const TrialSet& training, const CalibrationOptions& options,
+                           const Calibration& calibration) {
   StepChange change;
   TrialSetOptions halved = options.trials;
   halved.simulation.step /= 2;
-  const TrialSet finer(model, arm, training.trials(), halved);
+  const TrialSet finer(model, system, training.trials(), halved);
   const VectorXd theta = calibration.values();
   const MatrixXd there = finer.predictor().outputs(theta);
   std::vector<double> sds;
@@ -73,7 +74,7 @@ bool StepChange::matters() const {
   return mattersToEstimates();
 }
 
-SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptions& arm,
+SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptions& system,
                                            const std::vector<Trial>& training,
                                            const std::vector<Trial>& heldOut,
                                            const CalibrationOptions& options, double shortest) {
@@ -84,17 +85,17 @@ SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptio
       integrator == Integrator::variational || integrator == Integrator::variationalLeft;
   for (bool isFirst = true;; isFirst = false) {
     const TrialSetOptions& trials = result.options.trials;
-    result.training = std::make_unique<const TrialSet>(model, arm, training, trials);
+    result.training = std::make_unique<const TrialSet>(model, system, training, trials);
     if (!heldOut.empty()) {
       TrialSetOptions tested = trials;
       tested.latent = false;  // a prediction knows only what is expected
-      result.heldOut = std::make_unique<const TrialSet>(model, arm, heldOut, tested);
+      result.heldOut = std::make_unique<const TrialSet>(model, system, heldOut, tested);
     }
     const double half = trials.simulation.step / 2;
     bool isFinal = true;
     result.options.isFinal = [&](const Calibration& now) {
       if (!now.calibrated) return true;
-      result.change = changeOfHalving(model, arm, *result.training, result.options, now);
+      result.change = changeOfHalving(model, system, *result.training, result.options, now);
       isFinal = !mayShorten || half < shortest || !result.change.matters();
       return isFinal && (!options.isFinal || options.isFinal(now));
     };

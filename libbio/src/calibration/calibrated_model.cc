@@ -9,28 +9,29 @@ namespace {
 using Eigen::Index;
 
 bool isOfEmg(const Calibration& calibration) {
-  for (const CalibratedParameter& one : calibration.parameters)
-    if (one.asked.name.starts_with("emg.") || one.asked.name.find(".latent") != std::string::npos)
+  for (const CalibratedParameter& parameter : calibration.parameters)
+    if (parameter.asked.name.starts_with("emg.") ||
+        parameter.asked.name.find(".latent") != std::string::npos)
       return true;
   return false;
 }
 
 /// The error of all measured angles, and of each other channel.
-void compareWithReplay(const TrialReplay& replay, const MusculoskeletalSystem& arm,
-                       CalibratedTrial& one) {
+void compareWithReplay(const TrialReplay& replay, const MusculoskeletalSystem& system,
+                       CalibratedTrial& trial) {
   double sum = 0;
-  one.channels = replay.channelErrors;
+  trial.channels = replay.channelErrors;
   for (const auto& [name, error] : replay.errors) {
-    const auto i = static_cast<std::size_t>(arm.skeleton().indexOf(name));
-    if (arm.isPrescribed(static_cast<int>(i))) continue;
-    if (!arm.skeleton().coordinates()[i].isRotation) {
-      one.channels.push_back({ofCoordinate(name), error});
+    const auto i = static_cast<std::size_t>(system.skeleton().indexOf(name));
+    if (system.isPrescribed(static_cast<int>(i))) continue;
+    if (!system.skeleton().coordinates()[i].isRotation) {
+      trial.channels.push_back({ofCoordinate(name), error});
       continue;
     }
     sum += static_cast<double>(error.count) * error.rms * error.rms;
-    one.samples += error.count;
+    trial.samples += error.count;
   }
-  if (one.samples > 0) one.after = std::sqrt(sum / static_cast<double>(one.samples));
+  if (trial.samples > 0) trial.after = std::sqrt(sum / static_cast<double>(trial.samples));
 }
 
 }  // namespace
@@ -40,14 +41,14 @@ double CalibratedModel::rms(bool heldOut) const {
 }
 
 CalibratedModel calibratedModel(const TrialSet& training, const TrialSet* heldOut,
-                                const SystemOptions& arm, const SimulationOptions& simulation,
+                                const SystemOptions& system, const SimulationOptions& simulation,
                                 const Calibration& calibration) {
   if (!calibration.calibrated) throw std::invalid_argument("the calibration has no estimate");
   CalibratedModel result{calibration.calibrated->model, {}};
   const Eigen::VectorXd theta = calibration.values();
   const bool isDriven = isOfEmg(calibration);
   result.model.fitted = {simulation.step, {}};
-  const MusculoskeletalSystem calibrated(result.model, arm);
+  const MusculoskeletalSystem calibrated(result.model, system);
   const auto& free = calibrated.skeleton().coordinates();
   for (const TrialSet* set : {&training, heldOut}) {
     if (!set) continue;
@@ -66,7 +67,7 @@ CalibratedModel calibratedModel(const TrialSet& training, const TrialSet* heldOu
       }
       addStarts(result.model, one, trial.file, trial.sha256);
       if (isDriven) {
-        one.driven = drivenTable(trial, set->arm(), set->mappingAt(i, values));
+        one.driven = drivenTable(trial, set->system(), set->mappingAt(i, values));
         trial = drivenTrial(*one.driven, trial, result.model);
       }
       if (const auto replay = completeReplay(calibrated, trial, simulation, start))

@@ -22,8 +22,8 @@ ChannelNoise::ChannelNoise(const TrialSet& trials, const CalibrationOptions& opt
     const std::string& name = given.first;
     const double sd = given.second;
     const auto& channels = trials_.channels();
-    const bool isThere = std::any_of(channels.begin(), channels.end(), [&](const auto& one) {
-      return one.name == name && !one.areAngles;
+    const bool isThere = std::any_of(channels.begin(), channels.end(), [&](const auto& channel) {
+      return channel.name == name && !channel.areAngles;
     });
     if (!isThere) {
       throw std::invalid_argument(fmt::format("noise of '{}': no trial measures it", name));
@@ -35,9 +35,9 @@ ChannelNoise::ChannelNoise(const TrialSet& trials, const CalibrationOptions& opt
 }
 
 std::optional<double> ChannelNoise::given(std::size_t channel) const {
-  const MeasuredGroup& one = trials_.channels()[channel];
-  if (one.areAngles) return options_.noise;
-  const auto at = options_.channelNoise.find(one.name);
+  const MeasuredGroup& group = trials_.channels()[channel];
+  if (group.areAngles) return options_.noise;
+  const auto at = options_.channelNoise.find(group.name);
   if (at == options_.channelNoise.end()) return {};
   return at->second;
 }

@@ -37,8 +37,8 @@ std::optional<IntervalEnd> endOf(const info::LeastSquares& least, const VectorXd
   if (!(sd > 0 && std::isfinite(sd)) || !covariance.col(i).allFinite()) return {};
   IntervalEnd end{estimate + z * covariance.col(i) / sd};
   for (Index k = 0; k < end.theta.size(); ++k) {
-    const info::Parameter& one = least.parameters()[static_cast<std::size_t>(k)];
-    const double within = std::clamp(end.theta[k], one.lower, one.upper);
+    const info::Parameter& parameter = least.parameters()[static_cast<std::size_t>(k)];
+    const double within = std::clamp(end.theta[k], parameter.lower, parameter.upper);
     if (k == i && within != end.theta[k]) return {};
     end.theta[k] = within;
   }
@@ -47,33 +47,34 @@ std::optional<IntervalEnd> endOf(const info::LeastSquares& least, const VectorXd
   return end;
 }
 
-void withoutInterval(CalibratedParameter& one, const std::string& reason) {
-  one.sd = one.lower = one.upper = std::numeric_limits<double>::quiet_NaN();
-  one.identifiable = false;
-  one.why = fmt::format("no interval of {}: {}", one.asked.name, reason);
+void withoutInterval(CalibratedParameter& parameter, const std::string& reason) {
+  parameter.sd = parameter.lower = parameter.upper = std::numeric_limits<double>::quiet_NaN();
+  parameter.identifiable = false;
+  parameter.why = fmt::format("no interval of {}: {}", parameter.asked.name, reason);
 }
 
 /// Takes the ends of the profile likelihood.
 void follow(const info::LeastSquares& least, const info::Estimate& estimate, Index i, double sd,
-            const info::EstimateOptions& options, CalibratedParameter& one) {
+            const info::EstimateOptions& options, CalibratedParameter& parameter) {
   const info::ProfileInterval found = info::profileInterval(least, estimate, i, sd, options);
   const auto lowest = std::min_element(
       found.profile.points.begin(), found.profile.points.end(),
       [](const info::ProfilePoint& a, const info::ProfilePoint& b) { return a.cost < b.cost; });
   if (lowest != found.profile.points.end() && lowest->cost < estimate.cost - 0.5) {
-    return withoutInterval(one, fmt::format("the data fit better at {:.4g}, from where the search "
-                                            "did not go on; try --starts",
-                                            lowest->value));
+    return withoutInterval(parameter,
+                           fmt::format("the data fit better at {:.4g}, from where the search "
+                                       "did not go on; try --starts",
+                                       lowest->value));
   }
   if (!std::isfinite(found.lower) || !std::isfinite(found.upper)) {
-    return withoutInterval(one,
+    return withoutInterval(parameter,
                            fmt::format("the likelihood does not bound it {}",
                                        std::isfinite(found.upper) ? "from below" : "from above"));
   }
-  one.lower = found.lower;
-  one.upper = found.upper;
-  one.sd = (found.upper - found.lower) / (2 * info::normalQuantile(options.confidence));
-  one.byLikelihood = true;
+  parameter.lower = found.lower;
+  parameter.upper = found.upper;
+  parameter.sd = (found.upper - found.lower) / (2 * info::normalQuantile(options.confidence));
+  parameter.byLikelihood = true;
 }
 
 }  // namespace
@@ -110,11 +111,11 @@ void checkIntervals(const info::LeastSquares& least, const info::Estimate& estim
                     std::vector<CalibratedParameter>& parameters) {
   const double z = info::normalQuantile(options.confidence);
   for (Index i = 0; i < common; ++i) {
-    CalibratedParameter& one = parameters[static_cast<std::size_t>(i)];
-    if (std::isnan(one.sd)) continue;
+    CalibratedParameter& parameter = parameters[static_cast<std::size_t>(i)];
+    if (std::isnan(parameter.sd)) continue;
     if (!estimate.converged) {
       withoutInterval(
-          one, fmt::format("the search did not converge ({})", info::describe(estimate.why)));
+          parameter, fmt::format("the search did not converge ({})", info::describe(estimate.why)));
       continue;
     }
     double fewest = std::numeric_limits<double>::infinity(), most = 0;
@@ -126,9 +127,9 @@ void checkIntervals(const info::LeastSquares& least, const info::Estimate& estim
     }
     if (fewest >= leastRise && most <= mostRise) continue;
     try {
-      follow(least, estimate, i, one.sd, options, one);
+      follow(least, estimate, i, parameter.sd, options, parameter);
     } catch (const std::domain_error& error) {
-      withoutInterval(one, fmt::format("its profile likelihood: {}", error.what()));
+      withoutInterval(parameter, fmt::format("its profile likelihood: {}", error.what()));
     }
   }
 }
@@ -138,17 +139,18 @@ void encloseMinima(const std::vector<OtherMinimum>& minima, Index common, double
   const double z = info::normalQuantile(confidence);
   for (const OtherMinimum& minimum : minima) {
     for (Index i = 0; i < common; ++i) {
-      CalibratedParameter& one = parameters[static_cast<std::size_t>(i)];
+      CalibratedParameter& parameter = parameters[static_cast<std::size_t>(i)];
       const double value = minimum.values[i], sd = minimum.sd[i];
-      if (std::isnan(one.lower) || (value >= one.lower && value <= one.upper)) continue;
+      if (std::isnan(parameter.lower) || (value >= parameter.lower && value <= parameter.upper))
+        continue;
       const double half = std::isfinite(sd) ? z * sd : 0;
-      one.lower = std::max(one.asked.lower, std::min(one.lower, value - half));
-      one.upper = std::min(one.asked.upper, std::max(one.upper, value + half));
-      one.sd = std::numeric_limits<double>::quiet_NaN();
-      one.identifiable = false;
-      one.why = fmt::format("{} = {:.5g}{} fits as well as {:.5g}: the interval encloses both",
-                            one.asked.name, value,
-                            one.asked.unit.empty() ? "" : " " + one.asked.unit, one.value);
+      parameter.lower = std::max(parameter.asked.lower, std::min(parameter.lower, value - half));
+      parameter.upper = std::min(parameter.asked.upper, std::max(parameter.upper, value + half));
+      parameter.sd = std::numeric_limits<double>::quiet_NaN();
+      parameter.identifiable = false;
+      parameter.why = fmt::format(
+          "{} = {:.5g}{} fits as well as {:.5g}: the interval encloses both", parameter.asked.name,
+          value, parameter.asked.unit.empty() ? "" : " " + parameter.asked.unit, parameter.value);
     }
   }
 }

@@ -96,29 +96,30 @@ class Judge {
   }
 
   CalibratedParameter atBound(Index i) const {
-    CalibratedParameter one = blank(i);
-    one.atBound = true;
-    one.determinacy = {unknown, unknown, false, ""};
-    const bool low = one.value <= one.asked.lower;
-    const std::string unit = one.asked.unit.empty() ? "" : " " + one.asked.unit;
-    one.why = fmt::format(
+    CalibratedParameter parameter = blank(i);
+    parameter.atBound = true;
+    parameter.determinacy = {unknown, unknown, false, ""};
+    const bool low = parameter.value <= parameter.asked.lower;
+    const std::string unit = parameter.asked.unit.empty() ? "" : " " + parameter.asked.unit;
+    parameter.why = fmt::format(
         "{} is at its {} bound ({:.4g}{}): the data favour {} values, so no confidence interval is "
         "reported",
-        one.asked.name, low ? "lower" : "upper", one.value, unit, low ? "smaller" : "larger");
-    return one;
+        parameter.asked.name, low ? "lower" : "upper", parameter.value, unit,
+        low ? "smaller" : "larger");
+    return parameter;
   }
 
   CalibratedParameter described(Index i, const info::Determinacy& told, double sd) const {
-    CalibratedParameter one = blank(i);
-    one.determinacy = told;
-    one.identifiable = told.identifiable;
-    one.why = told.why;
-    if (!one.identifiable) return one;
+    CalibratedParameter parameter = blank(i);
+    parameter.determinacy = told;
+    parameter.identifiable = told.identifiable;
+    parameter.why = told.why;
+    if (!parameter.identifiable) return parameter;
     const double z = info::normalQuantile(confidence_);
-    one.sd = sd;
-    one.lower = std::max(one.asked.lower, one.value - z * sd);
-    one.upper = std::min(one.asked.upper, one.value + z * sd);
-    return one;
+    parameter.sd = sd;
+    parameter.lower = std::max(parameter.asked.lower, parameter.value - z * sd);
+    parameter.upper = std::min(parameter.asked.upper, parameter.value + z * sd);
+    return parameter;
   }
 
   const AskedParameters& asked_;

@@ -21,8 +21,8 @@ constexpr double likeness = 5e-3;  ///< RMS difference of lengths [m]
 PostureTable measuredPostures(const TrialSet& trials) {
   PostureTable table;
   std::vector<std::vector<const MeasuredSeries*>> byTrial(trials.trials().size());
-  for (const MeasuredSeries& one : trials.series()) {
-    if (one.what.kind == Observable::Kind::coordinate) byTrial[one.trial].push_back(&one);
+  for (const MeasuredSeries& series : trials.series()) {
+    if (series.what.kind == Observable::Kind::coordinate) byTrial[series.trial].push_back(&series);
   }
   std::vector<VectorXd> rows;
   const auto each = std::max<Index>(2, mostPostures / std::ssize(byTrial));
@@ -41,7 +41,7 @@ PostureTable measuredPostures(const TrialSet& trials) {
       rows.push_back(std::move(row));
     }
   }
-  for (const MeasuredSeries* one : byTrial.front()) table.coordinates.push_back(one->what.of);
+  for (const MeasuredSeries* series : byTrial.front()) table.coordinates.push_back(series->what.of);
   table.values.resize(std::ssize(rows), std::ssize(table.coordinates));
   for (std::size_t k = 0; k < rows.size(); ++k) table.values.row(static_cast<Index>(k)) = rows[k];
   return table;
@@ -150,9 +150,9 @@ std::vector<VectorXd> startsAtLikePaths(const TrialSet& trials,
   PostureTable postures;
   int looked = 0;
   for (std::size_t i = 0; i < trials.numCommon() && looked < mostPoints; ++i) {
-    const ModelParameter& one = trials.catalogue().parameters()[trials.selection()[i]];
-    const auto* point = std::get_if<PointTarget>(&one.targets.front());
-    if (!point || one.targets.size() > 1) continue;
+    const ModelParameter& parameter = trials.catalogue().parameters()[trials.selection()[i]];
+    const auto* point = std::get_if<PointTarget>(&parameter.targets.front());
+    if (!point || parameter.targets.size() > 1) continue;
     if (++looked == 1) postures = measuredPostures(trials);
     if (postures.values.size() == 0) return {};
     const auto place = static_cast<Index>(i);

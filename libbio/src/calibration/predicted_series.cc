@@ -15,7 +15,7 @@ double noiseOf(const TrialSet& training, const Calibration& calibration,
                const std::string& channel) {
   const auto& all = training.channels();
   const auto at = std::find_if(all.begin(), all.end(),
-                               [&](const MeasuredGroup& one) { return one.name == channel; });
+                               [&](const MeasuredGroup& group) { return group.name == channel; });
   if (at == all.end()) return std::nan("");
   return calibration.channelNoise[static_cast<std::size_t>(at - all.begin())].sd;
 }

@@ -26,22 +26,23 @@ bool isLatent(const ModelParameter& parameter) {
   return emg && emg->what == EmgTarget::What::latent;
 }
 
-EmgMapping latentMapping(const Trial& trial, const MusculoskeletalSystem& arm) {
+EmgMapping latentMapping(const Trial& trial, const MusculoskeletalSystem& system) {
   EmgMapping mapping;
-  const std::vector<std::string> muscles = muscleNames(arm);
-  for (const LatentDeclaration& one : trial.latent) {
-    if (std::find(muscles.begin(), muscles.end(), one.muscle) == muscles.end()) {
+  const std::vector<std::string> muscles = muscleNames(system);
+  for (const LatentDeclaration& declaration : trial.latent) {
+    if (std::find(muscles.begin(), muscles.end(), declaration.muscle) == muscles.end()) {
       throw std::invalid_argument(fmt::format(
           "{}: latent excitation of '{}': no free or prescribed coordinate moves this muscle",
-          trial.file, one.muscle));
+          trial.file, declaration.muscle));
     }
     try {
       const bool isNew =
           mapping.latent
-              .emplace(one.muscle,
-                       latentExcitation(one, trial.times[0], trial.times[trial.times.size() - 1]))
+              .emplace(declaration.muscle, latentExcitation(declaration, trial.times[0],
+                                                            trial.times[trial.times.size() - 1]))
               .second;
-      if (!isNew) throw std::invalid_argument("latent excitation of '" + one.muscle + "': twice");
+      if (!isNew)
+        throw std::invalid_argument("latent excitation of '" + declaration.muscle + "': twice");
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format("{}: {}", trial.file, error.what()));
     }
@@ -71,37 +72,38 @@ std::vector<std::size_t> selectDistinct(const ParameterCatalogue& catalogue,
   return catalogue.select(names);
 }
 
-TrialSet::TrialSet(const Model& model, const SystemOptions& arm, std::vector<Trial> trials,
+TrialSet::TrialSet(const Model& model, const SystemOptions& system, std::vector<Trial> trials,
                    const TrialSetOptions& options)
     : trials_(std::move(trials)),
       threads_(options.threads),
-      options_(arm),
-      arm_(std::make_unique<const MusculoskeletalSystem>(model, arm)) {
+      options_(system),
+      system_(std::make_unique<const MusculoskeletalSystem>(model, system)) {
   if (trials_.empty()) throw std::invalid_argument("no trial is given");
-  if (arm_->numMuscles() == 0) throw std::invalid_argument("no muscle moves a free coordinate");
+  if (system_->numMuscles() == 0) throw std::invalid_argument("no muscle moves a free coordinate");
   for (const Trial& trial : trials_) {
     catalogues_.push_back(std::make_unique<const ParameterCatalogue>(
-        model, *arm_, beginningOf(trial, model, *arm_, options.initial).point,
-        options.latent ? latentMapping(trial, *arm_) : EmgMapping{}));
+        model, *system_, beginningOf(trial, model, *system_, options.initial).point,
+        options.latent ? latentMapping(trial, *system_) : EmgMapping{}));
   }
   collectParameters(options);
   collectSeries(model);
   for (std::size_t i = 0; i < trials_.size(); ++i) {
     const Trial& trial = trials_[i];
-    RecordedTrial recorded = recordedTrial(trial, *arm_, options.simulation);
+    RecordedTrial recorded = recordedTrial(trial, *system_, options.simulation);
     recorded.simulation.progress = {};
     std::vector<ObservedSeries> observed;
-    for (const MeasuredSeries& one : series_) {
-      if (one.trial != i) continue;
-      observed.push_back({one.what, Eigen::Map<const Eigen::VectorXd>(
-                                        one.times.data(), static_cast<Index>(one.times.size()))});
+    for (const MeasuredSeries& series : series_) {
+      if (series.trial != i) continue;
+      observed.push_back(
+          {series.what, Eigen::Map<const Eigen::VectorXd>(
+                            series.times.data(), static_cast<Index>(series.times.size()))});
     }
     try {
-      (void)ObservedMotion(*arm_, observed);
+      (void)ObservedMotion(*system_, observed);
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format("{}: {}", trial.file, error.what()));
     }
-    experiments_.emplace_back(*catalogues_[i], arm, std::move(recorded.excitation),
+    experiments_.emplace_back(*catalogues_[i], system, std::move(recorded.excitation),
                               std::move(observed), selectionOf(i), recorded.simulation);
     begin_.push_back(begin_.back() + experiments_.back().size());
   }
@@ -124,8 +126,8 @@ void TrialSet::collectSeries(const Model& model) {
     for (const MeasuredChannel& measured : trials_[i].measured) {
       if (measured.times.size() == 0) continue;
       if (measured.what.isCoordinate()) {
-        const int index = arm_->skeleton().indexOf(measured.what.of);
-        if (index < 0 || arm_->isPrescribed(index)) continue;
+        const int index = system_->skeleton().indexOf(measured.what.of);
+        if (index < 0 || system_->isPrescribed(index)) continue;
       }
       series_.push_back({i,
                          measured.what,
@@ -135,7 +137,7 @@ void TrialSet::collectSeries(const Model& model) {
     }
     if (series_.size() == before) {
       std::vector<std::string> names;
-      for (const Coordinate& c : arm_->skeleton().coordinates()) names.push_back(c.name);
+      for (const Coordinate& c : system_->skeleton().coordinates()) names.push_back(c.name);
       throw std::invalid_argument(
           fmt::format("{}: no measured column of a free coordinate ({}), nor of anything else",
                       trials_[i].file, fmt::join(names, ", ")));
@@ -198,9 +200,9 @@ void TrialSet::addLatent(std::size_t trial, std::size_t first) {
   const EmgMapping mapping = catalogues_[trial]->nominal().mapping;
   const Trial& of = trials_[trial];
   for (std::size_t k = 0; k < own_[trial].size(); ++k) {
-    const ModelParameter& one = all[own_[trial][k]];
-    if (!isLatent(one)) continue;
-    const EmgTarget& target = std::get<EmgTarget>(one.targets.front());
+    const ModelParameter& parameter = all[own_[trial][k]];
+    if (!isLatent(parameter)) continue;
+    const EmgTarget& target = std::get<EmgTarget>(parameter.targets.front());
     if (target.knot != 0) continue;
     const auto declared =
         std::find_if(of.latent.begin(), of.latent.end(),
@@ -289,10 +291,10 @@ TrialSet::Cost TrialSet::leastSquares(const Eigen::VectorXd& theta,
 
 std::vector<TrialPredictor> TrialSet::nudged(double frequency) const {
   std::vector<TrialPredictor> held = experiments_;
-  for (const MeasuredSeries& one : series_) {
-    if (one.what.kind != Observable::Kind::coordinate || one.times.size() < 4) continue;
-    held[one.trial].hold(
-        nudgeTo(*arm_, arm_->skeleton().indexOf(one.what.of), one.times, one.values, frequency));
+  for (const MeasuredSeries& series : series_) {
+    if (series.what.kind != Observable::Kind::coordinate || series.times.size() < 4) continue;
+    held[series.trial].hold(nudgeTo(*system_, system_->skeleton().indexOf(series.what.of),
+                                    series.times, series.values, frequency));
   }
   return held;
 }

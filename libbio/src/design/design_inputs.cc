@@ -42,25 +42,26 @@ std::vector<double> merged(const std::vector<double>& first, const std::vector<d
 }
 
 /// Those with a torque.
-std::vector<CoordinateLimits> torqued(const MusculoskeletalSystem& arm,
+std::vector<CoordinateLimits> torqued(const MusculoskeletalSystem& system,
                                       const DesignLimits& limits) {
   std::vector<CoordinateLimits> torques;
   const auto& all = limits.coordinates;
-  for (const CoordinateLimits& one : all) {
-    const std::string& name = one.coordinate;
-    const int index = arm.skeleton().indexOf(name);
-    require(index >= 0 && !arm.isPrescribed(index),
+  for (const CoordinateLimits& limits : all) {
+    const std::string& name = limits.coordinate;
+    const int index = system.skeleton().indexOf(name);
+    require(index >= 0 && !system.isPrescribed(index),
             fmt::format("limits of '{}': must be a free coordinate", name));
     require(
         std::count_if(all.begin(), all.end(),
                       [&](const CoordinateLimits& other) { return other.coordinate == name; }) == 1,
         fmt::format("limits of '{}' are given twice, must be given once", name));
-    require(one.torque >= 0 && std::isfinite(one.torque),
-            fmt::format("largest torque on '{}' = {}, must be ≥ 0", name, one.torque));
-    require(one.lower < one.upper,
-            fmt::format("range of '{}': {} to {}, must rise", name, one.lower, one.upper));
-    require(one.speed > 0, fmt::format("largest speed of '{}' = {}, must be > 0", name, one.speed));
-    if (one.torque > 0) torques.push_back(one);
+    require(limits.torque >= 0 && std::isfinite(limits.torque),
+            fmt::format("largest torque on '{}' = {}, must be ≥ 0", name, limits.torque));
+    require(limits.lower < limits.upper,
+            fmt::format("range of '{}': {} to {}, must rise", name, limits.lower, limits.upper));
+    require(limits.speed > 0,
+            fmt::format("largest speed of '{}' = {}, must be > 0", name, limits.speed));
+    if (limits.torque > 0) torques.push_back(limits);
   }
   return torques;
 }
@@ -73,8 +74,8 @@ std::vector<info::ProfileLimits> profileLimits(const DesignLimits& limits,
                       limits.largestExcitation));
   require(limits.surprise >= 0, fmt::format("surprise = {}, must be ≥ 0", limits.surprise));
   std::vector<info::ProfileLimits> inputs;
-  for (const CoordinateLimits& one : torques) {
-    inputs.push_back({-one.torque, one.torque, limits.torqueRate, 0.0});
+  for (const CoordinateLimits& torque : torques) {
+    inputs.push_back({-torque.torque, torque.torque, limits.torqueRate, 0.0});
   }
   for (std::size_t g = 0; g < groups; ++g) {
     inputs.push_back({limits.leastExcitation, limits.largestExcitation, limits.excitationRate, {}});
@@ -122,11 +123,11 @@ Trial onRows(const Trial& given, const std::vector<double>& rows) {
 
 }  // namespace
 
-DesignInputs::DesignInputs(const MusculoskeletalSystem& arm, Trial trial, double startTime,
+DesignInputs::DesignInputs(const MusculoskeletalSystem& system, Trial trial, double startTime,
                            double duration, DesignLimits limits, std::vector<MuscleGroup> groups,
                            double knotInterval, std::vector<double> measuredTimes)
     : limits_(std::move(limits)),
-      torques_(torqued(arm, limits_)),
+      torques_(torqued(system, limits_)),
       groups_(std::move(groups)),
       measuredTimes_(std::move(measuredTimes)),
       profiles_(knotsOf(startTime, duration, knotInterval),
@@ -138,7 +139,7 @@ DesignInputs::DesignInputs(const MusculoskeletalSystem& arm, Trial trial, double
             fmt::format("group '{}' has no muscle, must have one", group.name));
     columns_.emplace_back();
     for (const std::string& name : group.muscles) {
-      const bool known = std::any_of(arm.muscles().begin(), arm.muscles().end(),
+      const bool known = std::any_of(system.muscles().begin(), system.muscles().end(),
                                      [&](const SystemMuscle& m) { return m.name == name; });
       require(known, fmt::format("'{}' must be a muscle that moves in the model", name));
       require(std::count(seen.begin(), seen.end(), name) == 0,
@@ -173,9 +174,9 @@ Trial DesignInputs::at(const VectorXd& x) const {
   const MatrixXd values =
       profiles_.values(x, std::vector<double>(trial.times.begin(), trial.times.end()));
   Index input = 0;
-  for (const CoordinateLimits& one : torques_) {
-    AppliedForce* known = torqueIn(trial.applied, one.coordinate);
-    if (!known) known = &trial.applied.emplace_back(AppliedForce{one.coordinate, {}});
+  for (const CoordinateLimits& limits : torques_) {
+    AppliedForce* known = torqueIn(trial.applied, limits.coordinate);
+    if (!known) known = &trial.applied.emplace_back(AppliedForce{limits.coordinate, {}});
     known->values = values.col(input++);
   }
   for (const auto& columns : columns_) {
@@ -192,8 +193,8 @@ VectorXd DesignInputs::own() const {
     const double t = profiles_.knots()[static_cast<std::size_t>(k)];
     Index input = 0;
     const info::LinearWeights here = info::linearAt(trial_.times, t);
-    for (const CoordinateLimits& one : torques_)
-      atKnots(k, input++) = here.value(torqueOf(trial_, one.coordinate));
+    for (const CoordinateLimits& limits : torques_)
+      atKnots(k, input++) = here.value(torqueOf(trial_, limits.coordinate));
     for (const auto& columns : columns_) {
       for (const Index column : columns) {
         atKnots(k, input) +=
@@ -233,7 +234,7 @@ double DesignInputs::largestExcitationRate(const Trial& trial) const {
   return largest;
 }
 
-Table plannedTable(const MusculoskeletalSystem& arm, const Trial& trial) {
+Table plannedTable(const MusculoskeletalSystem& system, const Trial& trial) {
   const Index rows = trial.times.size();
   Table table;
   table.name = "designed experiment";
@@ -261,9 +262,9 @@ Table plannedTable(const MusculoskeletalSystem& arm, const Trial& trial) {
       add(force.actuator, force.control);
       continue;
     }
-    const int index = arm.skeleton().indexOf(force.coordinate);
+    const int index = system.skeleton().indexOf(force.coordinate);
     const bool turns =
-        index < 0 || arm.skeleton().coordinates()[static_cast<std::size_t>(index)].isRotation;
+        index < 0 || system.skeleton().coordinates()[static_cast<std::size_t>(index)].isRotation;
     add(force.coordinate + (turns ? ".torque" : ".force"), force.values);
   }
   for (const MeasuredChannel& course : trial.prescribed) {

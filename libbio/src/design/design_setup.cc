@@ -63,12 +63,12 @@ info::Optimality optimalityNamed(const std::string& letter) {
   throw std::invalid_argument(fmt::format("criterion '{}', must be E, A or D", letter));
 }
 
-DesignLimits withCoordinates(DesignLimits limits, const MusculoskeletalSystem& arm,
+DesignLimits withCoordinates(DesignLimits limits, const MusculoskeletalSystem& system,
                              const GivenLimits& given) {
   std::map<std::string, const Coordinate*> free;
-  const auto& all = arm.skeleton().coordinates();
+  const auto& all = system.skeleton().coordinates();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!arm.isPrescribed(static_cast<int>(i))) free[all[i].name] = &all[i];
+    if (!system.isPrescribed(static_cast<int>(i))) free[all[i].name] = &all[i];
   }
   const auto checkNames = [&](const char* what, const auto& byName) {
     for (const auto& one : byName) {
@@ -89,42 +89,43 @@ DesignLimits withCoordinates(DesignLimits limits, const MusculoskeletalSystem& a
     return at == byName.end() ? 0 : at->second;
   };
   limits.coordinates.clear();
-  for (const Coordinate& one : all) {
-    if (!free.contains(one.name)) continue;
-    std::pair<double, double> range(one.rangeMin, one.rangeMax);
-    const auto at =
-        given.range.contains(one.name) ? given.range.find(one.name) : given.range.find("");
+  for (const Coordinate& coordinate : all) {
+    if (!free.contains(coordinate.name)) continue;
+    std::pair<double, double> range(coordinate.rangeMin, coordinate.rangeMax);
+    const auto at = given.range.contains(coordinate.name) ? given.range.find(coordinate.name)
+                                                          : given.range.find("");
     if (at != given.range.end()) range = at->second;
     if (!(range.first < range.second)) {
       throw std::invalid_argument(fmt::format("range: {:.4g} to {:.4g} {}, must rise", range.first,
-                                              range.second, one.isRotation ? "rad" : "m"));
+                                              range.second, coordinate.isRotation ? "rad" : "m"));
     }
-    limits.coordinates.push_back({one.name, range.first, range.second,
-                                  numberOf(given.speed, one.name),
-                                  numberOf(given.torque, one.name)});
+    limits.coordinates.push_back({coordinate.name, range.first, range.second,
+                                  numberOf(given.speed, coordinate.name),
+                                  numberOf(given.torque, coordinate.name)});
   }
   return limits;
 }
 
-std::vector<ChannelCandidate> freeCoordinates(const MusculoskeletalSystem& arm, double angle,
+std::vector<ChannelCandidate> freeCoordinates(const MusculoskeletalSystem& system, double angle,
                                               double shift) {
   std::vector<ChannelCandidate> observed;
-  const auto& all = arm.skeleton().coordinates();
+  const auto& all = system.skeleton().coordinates();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (arm.isPrescribed(static_cast<int>(i))) continue;
+    if (system.isPrescribed(static_cast<int>(i))) continue;
     observed.push_back({ofCoordinate(all[i].name), all[i].isRotation ? angle : shift});
   }
   return observed;
 }
 
-std::vector<MuscleGroup> muscleGroups(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q,
+std::vector<MuscleGroup> muscleGroups(const MusculoskeletalSystem& system, const Eigen::VectorXd& q,
                                       const std::vector<std::string>& names) {
   std::vector<MuscleGroup> groups;
   for (const std::string& text : names) {
     const auto dot = text.rfind('.');
-    const int index = dot == std::string::npos ? -1 : arm.skeleton().indexOf(text.substr(0, dot));
+    const int index =
+        dot == std::string::npos ? -1 : system.skeleton().indexOf(text.substr(0, dot));
     const std::string word = index < 0 ? text : text.substr(dot + 1);
-    const std::vector<MuscleGroup> named = flexorsAndExtensors(arm, q, std::max(0, index));
+    const std::vector<MuscleGroup> named = flexorsAndExtensors(system, q, std::max(0, index));
     const auto at = std::find_if(named.begin(), named.end(),
                                  [&](const MuscleGroup& group) { return group.name == word; });
     groups.push_back({text, at != named.end() ? at->muscles : joinedByPlus(text)});
@@ -144,13 +145,13 @@ info::MonteCarloResult simulatedRepetitions(const ExperimentDesign& design,
         "repetitions of an experiment with nuisance parameters: must have "
         "none");
   }
-  simulation.externalForce = externalForceOf(experiment.trial, design.arm());
-  simulation.prescribed = prescribedMotionOf(experiment.trial, design.arm());
+  simulation.externalForce = externalForceOf(experiment.trial, design.system());
+  simulation.prescribed = prescribedMotionOf(experiment.trial, design.system());
   std::vector<ObservedSeries> series;
-  for (const ChannelCandidate& one : q.observed) {
-    series.push_back({one.what, experiment.measuredTimes});
+  for (const ChannelCandidate& candidate : q.observed) {
+    series.push_back({candidate.what, experiment.measuredTimes});
   }
-  const TrialPredictor predictor(catalogue, built, excitationOf(experiment.trial, design.arm()),
+  const TrialPredictor predictor(catalogue, built, excitationOf(experiment.trial, design.system()),
                                  std::move(series), q.parameters, simulation);
   // in units that give all samples the noise of the first observable
   const double noise = q.observed.front().sd;

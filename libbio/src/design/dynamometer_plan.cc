@@ -47,17 +47,17 @@ enum class Suitability { suitable, unsuitable, cannotBeSimulated };
 
 class DynamometerPlanner {
  public:
-  DynamometerPlanner(const Model& model, const MusculoskeletalSystem& arm,
+  DynamometerPlanner(const Model& model, const MusculoskeletalSystem& system,
                      const SystemOptions& options, const SimulationOptions& simulation,
                      const DynamometerQuestion& question)
       : model_(model),
-        arm_(arm),
+        system_(system),
         options_(options),
         simulation_(simulation),
         question_(question),
         coordinate_(findCoordinate(model, question.coordinate)),
-        trials_(arm, coordinate_, question),
-        held_(startsOf(arm)),
+        trials_(system, coordinate_, question),
+        held_(startsOf(system)),
         catalogue_(held_.begin()->second),
         selection_(catalogue_.select(question.parameters)),
         asked_(selection_.size()) {
@@ -92,7 +92,8 @@ class DynamometerPlanner {
     plan.candidates = all.size() + list.outside;
     plan.failed = count(Suitability::cannotBeSimulated);
     plan.unsuitable = list.outside + count(Suitability::unsuitable);
-    std::erase_if(all, [](const DynamometerExperiment& one) { return one.fisher.size() == 0; });
+    std::erase_if(
+        all, [](const DynamometerExperiment& experiment) { return experiment.fisher.size() == 0; });
     if (all.empty()) {
       throw std::runtime_error(plan.failed > 0
                                    ? "none of the experiments can be simulated"
@@ -106,7 +107,7 @@ class DynamometerPlanner {
   }
 
  private:
-  /// Compiles the arm with a free joint, and what starts at each of the positions.
+  /// Compiles the system with a free joint, and what starts at each of the positions.
   void letGo() {
     freeOptions_ = options_;
     std::erase(freeOptions_.prescribed, coordinate_.name);
@@ -120,63 +121,64 @@ class DynamometerPlanner {
   }
 
   /// Catalogue of a start at each of the positions.
-  std::map<double, ParameterCatalogue> startsOf(const MusculoskeletalSystem& arm) const {
+  std::map<double, ParameterCatalogue> startsOf(const MusculoskeletalSystem& system) const {
     std::map<double, ParameterCatalogue> starts;
-    const int index = arm.skeleton().indexOf(coordinate_.name);
+    const int index = system.skeleton().indexOf(coordinate_.name);
     for (const double position : question_.positions) {
-      Eigen::VectorXd q = arm.skeleton().defaultValues();
+      Eigen::VectorXd q = system.skeleton().defaultValues();
       q[index] = position;
-      starts.emplace(position, ParameterCatalogue(model_, arm, {q, {}}));
+      starts.emplace(position, ParameterCatalogue(model_, system, {q, {}}));
     }
     return starts;
   }
 
   /// ΓᵀΓ/σ² of the moment.
-  Suitability inform(DynamometerExperiment& one) const {
+  Suitability inform(DynamometerExperiment& experiment) const {
     const Trial trial =
-        trialFrom(one.trial, "dynamometer", model_, {.prescribed = {coordinate_.name}});
-    const RecordedTrial recorded = recordedTrial(trial, arm_, simulation_);
+        trialFrom(experiment.trial, "dynamometer", model_, {.prescribed = {coordinate_.name}});
+    const RecordedTrial recorded = recordedTrial(trial, system_, simulation_);
     const TrialPredictor predictor(
-        held_.at(one.from), options_, recorded.excitation,
+        held_.at(experiment.from), options_, recorded.excitation,
         measuredSeries({Observable::Kind::moment}, coordinate_.name, trial.times), selection_,
         recorded.simulation);
     const Eigen::MatrixXd gamma = predictor.withSensitivities(catalogue_.values(selection_)).gamma;
     if (!gamma.allFinite()) return Suitability::cannotBeSimulated;
-    one.fisher = gamma.transpose() * gamma / (question_.noise * question_.noise);
+    experiment.fisher = gamma.transpose() * gamma / (question_.noise * question_.noise);
     return Suitability::suitable;
   }
 
   /// The generalised force that holds the joint where an isotonic contraction begins; NaN where
   /// that cannot be simulated.
-  double holdingForce(const DynamometerExperiment& one) const {
+  double holdingForce(const DynamometerExperiment& experiment) const {
     const Trial trial =
-        trialFrom(one.trial, "dynamometer", model_, {.prescribed = {coordinate_.name}});
+        trialFrom(experiment.trial, "dynamometer", model_, {.prescribed = {coordinate_.name}});
     SimulationOptions simulation = simulation_;
     simulation.startTime = trial.times[0];
     simulation.duration = simulation.step;
-    simulation.prescribed.add(arm_.prescribed().front(), {trial.times[0]}, {one.from});
+    simulation.prescribed.add(system_.prescribed().front(), {trial.times[0]}, {experiment.from});
     try {
-      const Trajectory held = simulateSetting(arm_, held_.at(one.from).nominal(),
-                                              excitationOf(trial, arm_), simulation);
-      return held.reaction(arm_.prescribed().front(), 0);
+      const Trajectory held = simulateSetting(system_, held_.at(experiment.from).nominal(),
+                                              excitationOf(trial, system_), simulation);
+      return held.reaction(system_.prescribed().front(), 0);
     } catch (const std::exception&) {
       return std::numeric_limits<double>::quiet_NaN();
     }
   }
 
   /// ΓᵀΓ/σ² of the coordinate; cuts the trial where the joint would leave its range.
-  Suitability informIsotonic(DynamometerExperiment& one) const {
-    const double holding = holdingForce(one);
+  Suitability informIsotonic(DynamometerExperiment& experiment) const {
+    const double holding = holdingForce(experiment);
     if (!std::isfinite(holding)) return Suitability::cannotBeSimulated;
     // the muscles have to move the joint in their direction, against the torque
-    if (!(one.group == "flexors" ? holding < 0 : holding > 0)) return Suitability::unsuitable;
-    one.torque = roundedTorque(one.load * holding);
-    Table& table = one.trial;
+    if (!(experiment.group == "flexors" ? holding < 0 : holding > 0))
+      return Suitability::unsuitable;
+    experiment.torque = roundedTorque(experiment.load * holding);
+    Table& table = experiment.trial;
     const Index last = table.values.cols() - 1;
-    table.values.col(last - 1).setConstant(one.torque);
+    table.values.col(last - 1).setConstant(experiment.torque);
     table.values.col(last).tail(table.values.rows() - 1).setConstant(std::nan(""));
 
-    const ParameterCatalogue& catalogue = letGo_.at(one.from);
+    const ParameterCatalogue& catalogue = letGo_.at(experiment.from);
     std::vector<std::size_t> selection;
     for (const std::size_t index : selection_) {
       selection.push_back(catalogue.find(catalogue_.parameters()[index].name));
@@ -197,9 +199,9 @@ class DynamometerPlanner {
     }
     table.values.conservativeResize(rows, Eigen::NoChange);
     table.values.col(last) = trials_.unit() * at.outputs.head(rows);
-    one.to = at.outputs[rows - 1];
+    experiment.to = at.outputs[rows - 1];
     const Eigen::MatrixXd gamma = at.gamma.topRows(rows);
-    one.fisher = gamma.transpose() * gamma / (question_.angleNoise * question_.angleNoise);
+    experiment.fisher = gamma.transpose() * gamma / (question_.angleNoise * question_.angleNoise);
     return Suitability::suitable;
   }
 
@@ -255,7 +257,7 @@ class DynamometerPlanner {
   }
 
   const Model& model_;
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const SystemOptions& options_;
   const SimulationOptions& simulation_;
   const DynamometerQuestion& question_;
@@ -306,11 +308,11 @@ void checkQuestion(const DynamometerQuestion& question) {
 
 }  // namespace
 
-DynamometerPlan planOnDynamometer(const Model& model, const MusculoskeletalSystem& arm,
+DynamometerPlan planOnDynamometer(const Model& model, const MusculoskeletalSystem& system,
                                   const SystemOptions& options, const SimulationOptions& simulation,
                                   const DynamometerQuestion& question) {
   checkQuestion(question);
-  return DynamometerPlanner(model, arm, options, simulation, question).plan();
+  return DynamometerPlanner(model, system, options, simulation, question).plan();
 }
 
 }  // namespace bio

@@ -213,40 +213,41 @@ DynamometerQuestion withDefaults(DynamometerQuestion question, const Coordinate&
   return DynamometerDefaults(std::move(question), coordinate, releaseSpeed).filled();
 }
 
-std::string instructionOf(const DynamometerExperiment& one, bool turns) {
+std::string instructionOf(const DynamometerExperiment& experiment, bool turns) {
   const double unit = turns ? degreesPerRadian : 1000;
   const char* unitName = turns ? "deg" : "mm";
-  const std::string contract =
-      fmt::format("{}: rise to {:.0f} % MVC in {:g} s", one.group, 100 * one.effort, course::ramp);
-  const std::string hold = fmt::format("hold at {:.0f} {}; rest {:g} s, {}", one.from * unit,
+  const std::string contract = fmt::format("{}: rise to {:.0f} % MVC in {:g} s", experiment.group,
+                                           100 * experiment.effort, course::ramp);
+  const std::string hold = fmt::format("hold at {:.0f} {}; rest {:g} s, {}", experiment.from * unit,
                                        unitName, course::rest, contract);
-  switch (one.kind) {
+  switch (experiment.kind) {
     case Kind::isometric:
       return fmt::format("{}, keep it for {:g} s, relax", hold, course::hold);
     case Kind::release:
       return fmt::format(
           "{}, keep it; after {:g} s turn to {:.0f} {} within {:.2g} s (up to {:.0f} {}/s) and "
           "hold there, keep it for {:g} s more, relax",
-          hold, course::beforeRelease, one.to * unit, unitName,
-          course::releaseTime(std::abs(one.to - one.from), one.speed), one.speed * unit, unitName,
-          course::afterRelease);
+          hold, course::beforeRelease, experiment.to * unit, unitName,
+          course::releaseTime(std::abs(experiment.to - experiment.from), experiment.speed),
+          experiment.speed * unit, unitName, course::afterRelease);
     case Kind::isotonic: {
-      const Eigen::Index rows = one.trial.values.rows();
+      const Eigen::Index rows = experiment.trial.values.rows();
       return fmt::format(
           "{}, keep it; when the moment is steady, let the joint go against a constant {:.3g} {} "
           "that pushes the angle {}, and measure the angle from then on for {:.2g} s, until about "
           "{:.0f} {}",
-          hold, std::abs(one.torque), turns ? "N m" : "N", one.torque < 0 ? "down" : "up",
-          one.trial.values(rows - 1, 0), one.to * unit, unitName);
+          hold, std::abs(experiment.torque), turns ? "N m" : "N",
+          experiment.torque < 0 ? "down" : "up", experiment.trial.values(rows - 1, 0),
+          experiment.to * unit, unitName);
     }
     case Kind::isokinetic:
     case Kind::passive:
       break;
   }
   const std::string turn =
-      fmt::format("turn from {:.0f} to {:.0f} {} at {:.0f} {}/s", one.from * unit, one.to * unit,
-                  unitName, one.speed * unit, unitName);
-  if (one.kind == Kind::passive) return turn + "; relax all the time";
+      fmt::format("turn from {:.0f} to {:.0f} {} at {:.0f} {}/s", experiment.from * unit,
+                  experiment.to * unit, unitName, experiment.speed * unit, unitName);
+  if (experiment.kind == Kind::passive) return turn + "; relax all the time";
   return fmt::format("{}; rest {:g} s, {}, then turn and keep it to the end", turn, course::rest,
                      contract);
 }

@@ -44,19 +44,19 @@ struct DynamometerCourse {
   double duration = 0;
 };
 
-DynamometerCourse courseOf(const DynamometerExperiment& one) {
-  const double length = std::abs(one.to - one.from);
+DynamometerCourse courseOf(const DynamometerExperiment& experiment) {
+  const double length = std::abs(experiment.to - experiment.from);
   double before = 0, moves = dynamometer::hold, behind = 0;
   DynamometerCourse course;
-  if (one.kind == ExperimentKind::release) {
+  if (experiment.kind == ExperimentKind::release) {
     before = dynamometer::beforeRelease;
-    moves = dynamometer::releaseTime(length, one.speed);
+    moves = dynamometer::releaseTime(length, experiment.speed);
     course.speedUp = moves / 2;
     behind = dynamometer::afterRelease;
-  } else if (one.kind != ExperimentKind::isometric) {
+  } else if (experiment.kind != ExperimentKind::isometric) {
     before = behind = settling;
     course.speedUp = dynamometer::speedUp;
-    moves = length / one.speed + course.speedUp;
+    moves = length / experiment.speed + course.speedUp;
   }
   course.begin = dynamometer::rest + dynamometer::ramp + before;
   course.contracted = course.begin + moves + behind + dynamometer::ramp;
@@ -66,12 +66,13 @@ DynamometerCourse courseOf(const DynamometerExperiment& one) {
 
 }  // namespace
 
-DynamometerTrials::DynamometerTrials(const MusculoskeletalSystem& arm, const Coordinate& coordinate,
+DynamometerTrials::DynamometerTrials(const MusculoskeletalSystem& system,
+                                     const Coordinate& coordinate,
                                      const DynamometerQuestion& question)
-    : arm_(arm),
+    : system_(system),
       coordinate_(coordinate),
       question_(question),
-      groups_(flexorsAndExtensors(arm, arm.skeleton().defaultValues())) {}
+      groups_(flexorsAndExtensors(system, system.skeleton().defaultValues())) {}
 
 bool DynamometerTrials::considers(ExperimentKind kind) const {
   return std::find(question_.kinds.begin(), question_.kinds.end(), kind) != question_.kinds.end();
@@ -83,31 +84,31 @@ DynamometerTrials::List DynamometerTrials::all() const {
     for (const double effort : question_.efforts) addContractions(group, effort, list);
   }
   addTurns(list);
-  for (DynamometerExperiment& one : list.experiments) one.trial = trialOf(one);
+  for (DynamometerExperiment& experiment : list.experiments) experiment.trial = trialOf(experiment);
   return list;
 }
 
 void DynamometerTrials::addContractions(const MuscleGroup& group, double effort, List& list) const {
   const double shortens = group.name == "flexors" ? 1 : -1;
   for (const double at : question_.positions) {
-    DynamometerExperiment one{ExperimentKind::isometric, at, at};
-    one.group = group.name;
-    one.effort = effort;
-    if (considers(one.kind)) list.experiments.push_back(one);
-    one.kind = ExperimentKind::isotonic;
+    DynamometerExperiment experiment{ExperimentKind::isometric, at, at};
+    experiment.group = group.name;
+    experiment.effort = effort;
+    if (considers(experiment.kind)) list.experiments.push_back(experiment);
+    experiment.kind = ExperimentKind::isotonic;
     for (const double load : question_.loads) {
-      if (!considers(one.kind)) break;
-      one.load = load;
-      list.experiments.push_back(one);
+      if (!considers(experiment.kind)) break;
+      experiment.load = load;
+      list.experiments.push_back(experiment);
     }
-    one.kind = ExperimentKind::release;
-    one.load = 0;
-    one.speed = question_.releaseSpeed;
+    experiment.kind = ExperimentKind::release;
+    experiment.load = 0;
+    experiment.speed = question_.releaseSpeed;
     for (const double length : question_.releases) {
-      if (!considers(one.kind)) break;
-      one.to = at + shortens * length;
-      if (one.to >= coordinate_.rangeMin && one.to <= coordinate_.rangeMax) {
-        list.experiments.push_back(one);
+      if (!considers(experiment.kind)) break;
+      experiment.to = at + shortens * length;
+      if (experiment.to >= coordinate_.rangeMin && experiment.to <= coordinate_.rangeMax) {
+        list.experiments.push_back(experiment);
       } else {
         ++list.outside;
       }
@@ -119,15 +120,15 @@ void DynamometerTrials::addTurns(List& list) const {
   const double low = question_.positions.front(), high = question_.positions.back();
   for (const double speed : question_.speeds) {
     for (const auto& [from, to] : {std::pair{low, high}, std::pair{high, low}}) {
-      DynamometerExperiment one{ExperimentKind::passive, from, to, speed};
-      if (considers(one.kind)) list.experiments.push_back(one);
-      one.kind = ExperimentKind::isokinetic;
-      if (!considers(one.kind)) continue;
+      DynamometerExperiment experiment{ExperimentKind::passive, from, to, speed};
+      if (considers(experiment.kind)) list.experiments.push_back(experiment);
+      experiment.kind = ExperimentKind::isokinetic;
+      if (!considers(experiment.kind)) continue;
       for (const MuscleGroup& group : groups_) {
         for (const double effort : question_.efforts) {
-          one.group = group.name;
-          one.effort = effort;
-          list.experiments.push_back(one);
+          experiment.group = group.name;
+          experiment.effort = effort;
+          list.experiments.push_back(experiment);
         }
       }
     }
@@ -142,14 +143,14 @@ double DynamometerTrials::unit() const {
   return coordinate_.isRotation ? 180 / std::numbers::pi : 1;
 }
 
-Table DynamometerTrials::trialOf(const DynamometerExperiment& one) const {
-  const bool isFree = one.kind == ExperimentKind::isotonic;
-  const DynamometerCourse course = isFree ? DynamometerCourse{} : courseOf(one);
+Table DynamometerTrials::trialOf(const DynamometerExperiment& experiment) const {
+  const bool isFree = experiment.kind == ExperimentKind::isotonic;
+  const DynamometerCourse course = isFree ? DynamometerCourse{} : courseOf(experiment);
   const double duration = isFree ? dynamometer::longestIsotonic : course.duration;
   Table table;
   table.name = "dynamometer";
   table.columns = {"time"};
-  for (const SystemMuscle& muscle : arm_.muscles()) table.columns.push_back(muscle.name);
+  for (const SystemMuscle& muscle : system_.muscles()) table.columns.push_back(muscle.name);
   if (isFree) {
     table.columns.push_back(coordinate_.name + (coordinate_.isRotation ? ".torque" : ".force"));
   }
@@ -157,11 +158,11 @@ Table DynamometerTrials::trialOf(const DynamometerExperiment& one) const {
   const auto rows = static_cast<Index>(std::floor(duration * question_.rate + 1e-9)) + 1;
   table.values.setZero(rows, static_cast<Index>(table.columns.size()));
   std::vector<double> raised;  // of each muscle, above rest
-  for (const SystemMuscle& muscle : arm_.muscles()) {
-    const double effort = contracts(one, muscle.name) ? one.effort : 0;
+  for (const SystemMuscle& muscle : system_.muscles()) {
+    const double effort = contracts(experiment, muscle.name) ? experiment.effort : 0;
     raised.push_back(std::max(0.0, effort - dynamometer::excitationAtRest));
   }
-  const double sign = one.to > one.from ? 1 : -1;
+  const double sign = experiment.to > experiment.from ? 1 : -1;
   for (Index k = 0; k < rows; ++k) {
     const double t = static_cast<double>(k) / question_.rate;
     const double contraction = isFree ? 1 : contractionAt(t, dynamometer::rest, course.contracted);
@@ -171,18 +172,19 @@ Table DynamometerTrials::trialOf(const DynamometerExperiment& one) const {
           dynamometer::excitationAtRest + raised[m] * contraction;
     }
     const double turned =
-        one.to == one.from
+        experiment.to == experiment.from
             ? 0
-            : turnedAt(t - course.begin, std::abs(one.to - one.from), one.speed, course.speedUp);
-    table.values(k, table.values.cols() - 1) = unit() * (one.from + sign * turned);
+            : turnedAt(t - course.begin, std::abs(experiment.to - experiment.from),
+                       experiment.speed, course.speedUp);
+    table.values(k, table.values.cols() - 1) = unit() * (experiment.from + sign * turned);
   }
   return table;
 }
 
-bool DynamometerTrials::contracts(const DynamometerExperiment& one,
+bool DynamometerTrials::contracts(const DynamometerExperiment& experiment,
                                   const std::string& muscle) const {
   for (const MuscleGroup& group : groups_) {
-    if (group.name != one.group) continue;
+    if (group.name != experiment.group) continue;
     return std::find(group.muscles.begin(), group.muscles.end(), muscle) != group.muscles.end();
   }
   return false;

@@ -11,7 +11,7 @@ namespace bio {
 class DynamometerTrials {
  public:
   /// All must outlive it.
-  DynamometerTrials(const MusculoskeletalSystem& arm, const Coordinate& coordinate,
+  DynamometerTrials(const MusculoskeletalSystem& system, const Coordinate& coordinate,
                     const DynamometerQuestion& question);
 
   struct List {
@@ -30,10 +30,10 @@ class DynamometerTrials {
   bool considers(DynamometerExperiment::Kind kind) const;
   void addContractions(const MuscleGroup& group, double effort, List& list) const;
   void addTurns(List& list) const;
-  Table trialOf(const DynamometerExperiment& one) const;
-  bool contracts(const DynamometerExperiment& one, const std::string& muscle) const;
+  Table trialOf(const DynamometerExperiment& experiment) const;
+  bool contracts(const DynamometerExperiment& experiment, const std::string& muscle) const;
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const Coordinate& coordinate_;
   const DynamometerQuestion& question_;
   std::vector<MuscleGroup> groups_;

@@ -31,24 +31,24 @@ std::vector<ObservedSeries> seriesOf(const std::vector<Observable>& observables,
 
 std::vector<Observable> observablesOf(const DesignQuestion& question) {
   std::vector<Observable> all;
-  for (const ChannelCandidate& one : question.observed) {
-    require(one.sd > 0 && std::isfinite(one.sd),
-            fmt::format("noise of '{}' = {}, must be > 0", nameOf(one.what), one.sd));
-    require(std::count(all.begin(), all.end(), one.what) == 0,
-            fmt::format("'{}' is observed twice, must be once", nameOf(one.what)));
-    all.push_back(one.what);
+  for (const ChannelCandidate& candidate : question.observed) {
+    require(candidate.sd > 0 && std::isfinite(candidate.sd),
+            fmt::format("noise of '{}' = {}, must be > 0", nameOf(candidate.what), candidate.sd));
+    require(std::count(all.begin(), all.end(), candidate.what) == 0,
+            fmt::format("'{}' is observed twice, must be once", nameOf(candidate.what)));
+    all.push_back(candidate.what);
   }
   require(!all.empty(), "nothing is observed, at least one channel must be");
   return all;
 }
 
 /// Free coordinates first, so that a trial with these columns begins where the experiment does.
-std::vector<Observable> predictedOf(const MusculoskeletalSystem& arm,
+std::vector<Observable> predictedOf(const MusculoskeletalSystem& system,
                                     const std::vector<Observable>& observed) {
   std::vector<Observable> all;
-  for (std::size_t i = 0; i < arm.skeleton().coordinates().size(); ++i) {
-    if (arm.isPrescribed(static_cast<int>(i))) continue;
-    all.push_back(ofCoordinate(arm.skeleton().coordinates()[i].name));
+  for (std::size_t i = 0; i < system.skeleton().coordinates().size(); ++i) {
+    if (system.isPrescribed(static_cast<int>(i))) continue;
+    all.push_back(ofCoordinate(system.skeleton().coordinates()[i].name));
   }
   const auto isNew = [&](const Observable& what) {
     return std::find(all.begin(), all.end(), what) == all.end() && !what.isCoordinate();
@@ -65,23 +65,23 @@ MatrixXd byObservable(const VectorXd& values, std::size_t observables) {
 
 }  // namespace
 
-ExperimentDesign::ExperimentDesign(const MusculoskeletalSystem& arm,
+ExperimentDesign::ExperimentDesign(const MusculoskeletalSystem& system,
                                    const ParameterCatalogue& catalogue,
                                    ParameterCatalogue::Setting setting, const Trial& trial,
                                    const SimulationOptions& simulation, DesignQuestion question,
                                    DesignLimits limits, std::vector<MuscleGroup> groups,
                                    double knotInterval)
-    : arm_(&arm),
+    : system_(&system),
       catalogue_(&catalogue),
       setting_(std::move(setting)),
       simulation_(simulation),
       question_(std::move(question)),
-      inputs_(arm, trial, simulation.startTime, simulation.duration, std::move(limits),
+      inputs_(system, trial, simulation.startTime, simulation.duration, std::move(limits),
               std::move(groups), knotInterval,
               samplingTimes(simulation.startTime, simulation.duration, question_.period)),
-      observed_(arm, seriesOf(observablesOf(question_), inputs_.measuredTimes())),
-      predicted_(predictedOf(arm, observablesOf(question_))) {
-  simulation_.prescribed = prescribedMotionOf(trial, arm);
+      observed_(system, seriesOf(observablesOf(question_), inputs_.measuredTimes())),
+      predicted_(predictedOf(system, observablesOf(question_))) {
+  simulation_.prescribed = prescribedMotionOf(trial, system);
   require(!question_.parameters.empty(), "no parameter is given");
   require(question_.criterion != info::Optimality::conditionNumber,
           "the criterion must be E, A or D");
@@ -105,9 +105,9 @@ ExperimentDesign::ExperimentDesign(const MusculoskeletalSystem& arm,
 
 SensitivityTrajectory ExperimentDesign::simulateTrial(const Trial& trial) const {
   SensitivityOptions options{simulation_, observed_.needsMuscles(), observed_.needsReactions()};
-  options.simulation.externalForce = externalForceOf(trial, *arm_);
-  return simulateWithSensitivities(*arm_, *catalogue_, setting_, wanted_,
-                                   excitationOf(trial, *arm_), options);
+  options.simulation.externalForce = externalForceOf(trial, *system_);
+  return simulateWithSensitivities(*system_, *catalogue_, setting_, wanted_,
+                                   excitationOf(trial, *system_), options);
 }
 
 /// In units of the scales, and of the noise of each observable.
@@ -193,7 +193,7 @@ double ExperimentDesign::penalty(const SensitivityTrajectory& s, double price) c
   // from a margin inside the limits on, by the square, as a mean over the rows
   double sum = 0;
   for (const CoordinateLimits& limits : inputs_.limits().coordinates) {
-    const int c = arm_->skeleton().indexOf(limits.coordinate);
+    const int c = system_->skeleton().indexOf(limits.coordinate);
     const double margin = 0.02 * (limits.upper - limits.lower);
     const VectorXd surprise = surpriseOf(s.q[static_cast<std::size_t>(c)]);
     for (Index k = 0; k < surprise.size(); ++k) {
@@ -210,7 +210,7 @@ double ExperimentDesign::penalty(const SensitivityTrajectory& s, double price) c
 std::vector<MotionRange> ExperimentDesign::rangesOf(const SensitivityTrajectory& s) const {
   std::vector<MotionRange> ranges;
   for (const CoordinateLimits& limits : inputs_.limits().coordinates) {
-    const int c = arm_->skeleton().indexOf(limits.coordinate);
+    const int c = system_->skeleton().indexOf(limits.coordinate);
     const VectorXd q = s.motion.q.row(c).transpose();
     const VectorXd surprise = surpriseOf(s.q[static_cast<std::size_t>(c)]);
     ranges.push_back({q.minCoeff(), q.maxCoeff(), (q - surprise).minCoeff(),
@@ -239,7 +239,7 @@ DesignedExperiment ExperimentDesign::at(const VectorXd& x) const {
   }
   const std::vector<double>& times = inputs_.measuredTimes();
   e.measuredTimes = VectorXd::Map(times.data(), static_cast<Index>(times.size()));
-  const VectorXd predicted = ObservedMotion(*arm_, seriesOf(predicted_, times)).values(s.motion);
+  const VectorXd predicted = ObservedMotion(*system_, seriesOf(predicted_, times)).values(s.motion);
   e.trial.measured = inputs_.measured(predicted_, byObservable(predicted, predicted_.size()));
   e.ranges = rangesOf(s);
   e.motion = std::move(s.motion);
@@ -262,9 +262,9 @@ bool ExperimentDesign::keepsRanges(const std::vector<MotionRange>& ranges) const
 bool ExperimentDesign::keepsLimits(const DesignedExperiment& e) const {
   constexpr double rounding = 1 + 1e-6;
   const DesignLimits& limits = inputs_.limits();
-  for (const CoordinateLimits& one : inputs_.torques()) {
-    if (inputs_.largestTorque(e.trial, one.coordinate) > one.torque * rounding) return false;
-    if (inputs_.largestTorqueRate(e.trial, one.coordinate) > limits.torqueRate * rounding) {
+  for (const CoordinateLimits& torque : inputs_.torques()) {
+    if (inputs_.largestTorque(e.trial, torque.coordinate) > torque.torque * rounding) return false;
+    if (inputs_.largestTorqueRate(e.trial, torque.coordinate) > limits.torqueRate * rounding) {
       return false;
     }
   }
@@ -272,16 +272,16 @@ bool ExperimentDesign::keepsLimits(const DesignedExperiment& e) const {
                                                                limits.excitationRate * rounding);
 }
 
-std::vector<MuscleGroup> flexorsAndExtensors(const MusculoskeletalSystem& arm, const VectorXd& q,
+std::vector<MuscleGroup> flexorsAndExtensors(const MusculoskeletalSystem& system, const VectorXd& q,
                                              int coordinate) {
   std::vector<MuscleGroup> groups = {{"flexors", {}}, {"extensors", {}}};
-  stepping::withCoordinates(arm.skeleton(), [&](auto N) {
-    SystemConfiguration<decltype(N)::value> configuration(arm);
+  stepping::withCoordinates(system.skeleton(), [&](auto N) {
+    SystemConfiguration<decltype(N)::value> configuration(system);
     configuration.moveTo(q);
-    for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
+    for (std::size_t i = 0; i < system.numMuscles(); ++i) {
       const double slope = configuration.length(i).dL_dq[coordinate];
       if (std::abs(slope) < 1e-12) continue;  // does not cross it
-      groups[slope < 0 ? 0 : 1].muscles.push_back(arm.muscles()[i].name);
+      groups[slope < 0 ? 0 : 1].muscles.push_back(system.muscles()[i].name);
     }
   });
   std::erase_if(groups, [](const MuscleGroup& group) { return group.muscles.empty(); });

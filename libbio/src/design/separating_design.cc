@@ -56,22 +56,22 @@ MusculoskeletalProblemOptions planning(MusculoskeletalProblemOptions options,
                                        const std::vector<ChannelCandidate>& observed) {
   options.usableSeries = false;
   options.sensors.clear();
-  for (const ChannelCandidate& one : observed) options.sensors.push_back(one.what);
+  for (const ChannelCandidate& candidate : observed) options.sensors.push_back(candidate.what);
   return options;
 }
 
 /// All that is free to move; where nothing is, what is prescribed and has its moment observed.
-std::vector<std::string> inQuestion(const MusculoskeletalSystem& arm,
+std::vector<std::string> inQuestion(const MusculoskeletalSystem& system,
                                     const std::vector<ChannelCandidate>& observed) {
   std::vector<std::string> free;
-  for (std::size_t i = 0; i < arm.skeleton().coordinates().size(); ++i) {
-    if (!arm.isPrescribed(static_cast<int>(i))) {
-      free.push_back(arm.skeleton().coordinates()[i].name);
+  for (std::size_t i = 0; i < system.skeleton().coordinates().size(); ++i) {
+    if (!system.isPrescribed(static_cast<int>(i))) {
+      free.push_back(system.skeleton().coordinates()[i].name);
     }
   }
   if (!free.empty()) return free;
-  for (const ChannelCandidate& one : observed) {
-    if (one.what.kind == Observable::Kind::moment) free.push_back(one.what.of);
+  for (const ChannelCandidate& candidate : observed) {
+    if (candidate.what.kind == Observable::Kind::moment) free.push_back(candidate.what.of);
   }
   require(!free.empty(), "no coordinate is free, and no moment is observed: must have either");
   return free;
@@ -85,8 +85,8 @@ info::discover::Whitening noiseOf(const std::vector<ChannelCandidate>& observed)
 
 }  // namespace
 
-SeparatingDesign::SeparatingDesign(const Model& model, const SystemOptions& built, const Trial& trial,
-                                   const MusculoskeletalProblemOptions& options,
+SeparatingDesign::SeparatingDesign(const Model& model, const SystemOptions& built,
+                                   const Trial& trial, const MusculoskeletalProblemOptions& options,
                                    SeparationQuestion question, DesignLimits limits,
                                    std::vector<bio::MuscleGroup> groups, double knotInterval)
     : model_(model),
@@ -101,11 +101,11 @@ SeparatingDesign::SeparatingDesign(const Model& model, const SystemOptions& buil
               std::move(groups), knotInterval,
               samplingTimes(trial.times[0], trial.duration(), question_.period)) {
   require(!observed_.empty(), "nothing is observed, at least one channel must be");
-  for (const ChannelCandidate& one : question_.observed) {
-    require(one.sd > 0 && std::isfinite(one.sd),
-            fmt::format("noise of '{}' = {}, must be > 0", nameOf(one.what), one.sd));
-    require(std::count(observed_.begin(), observed_.end(), one.what) == 1,
-            fmt::format("'{}' is observed twice, must be once", nameOf(one.what)));
+  for (const ChannelCandidate& candidate : question_.observed) {
+    require(candidate.sd > 0 && std::isfinite(candidate.sd),
+            fmt::format("noise of '{}' = {}, must be > 0", nameOf(candidate.what), candidate.sd));
+    require(std::count(observed_.begin(), observed_.end(), candidate.what) == 1,
+            fmt::format("'{}' is observed twice, must be once", nameOf(candidate.what)));
   }
   for (std::size_t i = 0; i < system_.skeleton().coordinates().size(); ++i) {
     const std::string& name = system_.skeleton().coordinates()[i].name;

@@ -66,8 +66,8 @@ Augmented augmentedModel(const EncompassingModel& encompassing, const Eigen::Vec
   dropAbsent(model.limitForces, encompassing.base().limitForces.size());
   dropAbsent(model.expressionForces, encompassing.base().expressionForces.size());
   for (const auto& [muscle, proxies] : encompassing.proxies()) {
-    const auto works = [&, name = &muscle](const Muscle& one) {
-      return one.name == *name && one.enabled;
+    const auto works = [&, name = &muscle](const Muscle& muscle) {
+      return muscle.name == *name && muscle.enabled;
     };
     if (std::any_of(model.muscles.begin(), model.muscles.end(), works))
       result.muscles.push_back(muscle);
@@ -113,11 +113,11 @@ Augmented addEffects(const EncompassingModel& encompassing, const std::vector<Ef
   return result;
 }
 
-Augmented addEffects(const Model& model, const SystemOptions& arm,
+Augmented addEffects(const Model& model, const SystemOptions& system,
                      const CoordinateNames& coordinates, const std::vector<EffectToAdd>& effects,
                      const EffectProvenance& provenance,
                      const std::vector<info::discover::FormulaTerm>& formula, std::size_t axis) {
-  return addEffects(encompassingModel(model, arm, coordinates, {}, formula, axis), effects,
+  return addEffects(encompassingModel(model, system, coordinates, {}, formula, axis), effects,
                     provenance);
 }
 

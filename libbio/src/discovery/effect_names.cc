@@ -29,10 +29,10 @@ constexpr std::array<LongName, 12> longNames{{
 
 std::string translated(const std::string& word, std::string_view LongName::*from,
                        std::string_view LongName::*to) {
-  for (const LongName& one : longNames) {
-    if (!one.isPrefix && word == one.*from) return std::string(one.*to);
-    if (one.isPrefix && word.size() > (one.*from).size() && word.starts_with(one.*from)) {
-      return std::string(one.*to) + word.substr((one.*from).size());
+  for (const LongName& name : longNames) {
+    if (!name.isPrefix && word == name.*from) return std::string(name.*to);
+    if (name.isPrefix && word.size() > (name.*from).size() && word.starts_with(name.*from)) {
+      return std::string(name.*to) + word.substr((name.*from).size());
     }
   }
   return word;

@@ -51,7 +51,7 @@ EffectSize effectSize(const MusculoskeletalProblem& data, std::size_t candidate,
       const std::size_t sensor = model.sensorOf(effect.quantities.front());
       const Observable& what = model.sensors()[sensor];
       if (!what.isCoordinate()) return size;
-      const MusculoskeletalSystem system = data.armAt(trial, values);
+      const MusculoskeletalSystem system = data.systemAt(trial, values);
       size.motionRms = sensorError(
           with, {system, what, model.sensorAt(alone, sensor), with.time, with.time.front()},
           system.skeleton().indexOf(what.of));
@@ -68,7 +68,7 @@ EffectSize effectSize(const MusculoskeletalProblem& data, std::size_t candidate,
       return size;
     const MatrixXd moments = requiredWithout.reaction - required.reaction;
     if (!moments.allFinite()) return size;
-    const MusculoskeletalSystem system = data.armAt(trial, values);
+    const MusculoskeletalSystem system = data.systemAt(trial, values);
     for (int k = 0; k < static_cast<int>(moments.rows()); ++k) {
       const MuscleReport muscles = reportMuscles(system, with, k);
       const VectorXd net = muscles.tendonForce.cwiseProduct(muscles.momentArm).colwise().sum();

@@ -12,28 +12,28 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-EncompassingModel::EncompassingModel(const Model& model, const SystemOptions& arm,
+EncompassingModel::EncompassingModel(const Model& model, const SystemOptions& system,
                                      const CoordinateNames& coordinates,
                                      std::vector<Observable> sensors)
     : base_(model),
-      armOptions_(arm),
-      arm_(std::make_unique<const MusculoskeletalSystem>(model, arm)),
+      systemOptions_(system),
+      system_(std::make_unique<const MusculoskeletalSystem>(model, system)),
       sensors_(std::move(sensors)),
       encompassing_(model) {
   if (coordinates.all.empty()) throw std::invalid_argument("no observed coordinate is given");
   for (const std::string& name : coordinates.all) {
     MovingCoordinate at;
-    at.index = arm_->skeleton().indexOf(name);
+    at.index = system_->skeleton().indexOf(name);
     if (at.index < 0)
       throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", name));
-    at.coordinate = arm_->skeleton().coordinates()[static_cast<std::size_t>(at.index)];
+    at.coordinate = system_->skeleton().coordinates()[static_cast<std::size_t>(at.index)];
     coordinates_.push_back(std::move(at));
   }
   if (sensors_.empty()) {
     for (const std::string& name : coordinates.all) sensors_.push_back(ofCoordinate(name));
   }
   parameters_ = std::make_unique<const ParameterCatalogue>(
-      model, *arm_, StartPoint{arm_->skeleton().defaultValues(), {}});
+      model, *system_, StartPoint{system_->skeleton().defaultValues(), {}});
   for (MovingCoordinate& at : coordinates_) findBodies(at);
   for (const Body& body : base_.bodies) {
     const bool isMoved =
@@ -134,14 +134,15 @@ void EncompassingModel::trialsLast(double first, double last) {
     time.upper = upper;
     time.nominal = (lower + upper) / 2;
     time.sd = (upper - lower) / std::sqrt(12.0);
-    for (Candidate& one : candidates_) {
-      if (one.quantities.front() != force.amplitude) continue;
-      one.sds[1] = time.sd;
-      const double size = one.starts.front()[0];
+    for (Candidate& candidate : candidates_) {
+      if (candidate.quantities.front() != force.amplitude) continue;
+      candidate.sds[1] = time.sd;
+      const double size = candidate.starts.front()[0];
       const auto count = static_cast<int>(std::ceil((upper - lower) / spacing));
-      one.starts.clear();
+      candidate.starts.clear();
       for (int k = 0; k < count; ++k) {
-        one.starts.push_back(Eigen::Vector2d(size, lower + (upper - lower) * (k + 0.5) / count));
+        candidate.starts.push_back(
+            Eigen::Vector2d(size, lower + (upper - lower) * (k + 0.5) / count));
       }
     }
   }
@@ -190,7 +191,7 @@ EncompassingModel::Numbers EncompassingModel::numbersAt(const VectorXd& values) 
 ParameterCatalogue::Setting EncompassingModel::settingAt(
     const VectorXd& values, const std::vector<std::size_t>& wanted) const {
   ParameterCatalogue::Setting setting{encompassing_, {}, {}, {}};
-  setting.start.q = arm_->skeleton().defaultValues();
+  setting.start.q = system_->skeleton().defaultValues();
   setting.start.qDot = VectorXd::Zero(setting.start.q.size());
   const Numbers numbers = numbersAt(values);
   for (std::size_t i = 0; i < numbers_.size(); ++i) {
@@ -228,7 +229,8 @@ ParameterCatalogue::Setting EncompassingModel::settingAt(
   return setting;
 }
 
-MusculoskeletalSystem EncompassingModel::armOf(const ParameterCatalogue::Setting& setting) const {
+MusculoskeletalSystem EncompassingModel::systemOf(
+    const ParameterCatalogue::Setting& setting) const {
   const Model& model = setting.model;
   const auto isShaped = [&](std::size_t m) {
     const Path& path = model.muscles[m].path;
@@ -245,7 +247,7 @@ MusculoskeletalSystem EncompassingModel::armOf(const ParameterCatalogue::Setting
   for (std::size_t m = 0; m < model.muscles.size(); ++m) {
     if (model.muscles[m].enabled && isShaped(m)) shaped.push_back(model.muscles[m].name);
   }
-  return {model, armOptions_, *arm_, shaped};
+  return {model, systemOptions_, *system_, shaped};
 }
 
 ParameterDirection EncompassingModel::direction(const VectorXd& values,

@@ -16,11 +16,11 @@ Index numUntil(const Eigen::VectorXd& times, double end) {
 /// Leaves out what begins later.
 template <typename Series>
 void cut(std::vector<Series>& all, double end) {
-  std::erase_if(all, [&](const Series& one) { return numUntil(one.times, end) == 0; });
-  for (Series& one : all) {
-    const Index n = numUntil(one.times, end);
-    one.times.conservativeResize(n);
-    one.values.conservativeResize(n);
+  std::erase_if(all, [&](const Series& series) { return numUntil(series.times, end) == 0; });
+  for (Series& series : all) {
+    const Index n = numUntil(series.times, end);
+    series.times.conservativeResize(n);
+    series.values.conservativeResize(n);
   }
 }
 
@@ -32,9 +32,9 @@ Trial partUntil(const Trial& trial, double end) {
   part.sha256.clear();  // it is not what is in the file
   part.times.conservativeResize(rows);
   part.excitations.conservativeResize(rows, Eigen::NoChange);
-  for (AppliedForce& one : part.applied) {
-    one.values.conservativeResize(rows);
-    if (one.control.size() > 0) one.control.conservativeResize(rows);
+  for (AppliedForce& force : part.applied) {
+    force.values.conservativeResize(rows);
+    if (force.control.size() > 0) force.control.conservativeResize(rows);
   }
   cut(part.measured, end);
   return part;

@@ -25,11 +25,12 @@ struct Movement {
   Placement<double> at, derivative;
 };
 
-Movement movement(const MusculoskeletalSystem& arm, std::size_t segment, int freeIndex, double q) {
-  return stepping::withCoordinates(arm.skeleton(), [&](auto N) {
-    Eigen::Matrix<double, decltype(N)::value, 1> at = arm.skeleton().defaultValues();
+Movement movement(const MusculoskeletalSystem& system, std::size_t segment, int freeIndex,
+                  double q) {
+  return stepping::withCoordinates(system.skeleton(), [&](auto N) {
+    Eigen::Matrix<double, decltype(N)::value, 1> at = system.skeleton().defaultValues();
     at[freeIndex] = q;
-    SystemConfiguration<decltype(N)::value> configuration(arm);
+    SystemConfiguration<decltype(N)::value> configuration(system);
     configuration.moveTo(at);
     if constexpr (decltype(N)::value == Eigen::Dynamic) {
       return Movement{configuration.placement(segment), configuration.change(segment, freeIndex)};
@@ -45,10 +46,10 @@ Movement movement(const MusculoskeletalSystem& arm, std::size_t segment, int fre
 
 Vector3d EncompassingModel::positionOf(const std::string& body, const Vector3d& point,
                                        double q) const {
-  const BodyPlacement& place = arm_->skeleton().placeOf(body);
+  const BodyPlacement& place = system_->skeleton().placeOf(body);
   const Vector3d inSegment = place.X_SB.R * point + place.X_SB.p;
   if (place.segment == 0) return inSegment;
-  const Placement<double> X = movement(*arm_, place.segment, coordinates_.front().index, q).at;
+  const Placement<double> X = movement(*system_, place.segment, coordinates_.front().index, q).at;
   return X.R * inSegment + X.p;
 }
 
@@ -64,17 +65,17 @@ Vector3d centreIn(const Model& model, const BodyPlacement& place, const std::str
 }  // namespace
 
 Vector3d EncompassingModel::velocityOf(const std::string& body, double q) const {
-  const BodyPlacement& place = arm_->skeleton().placeOf(body);
+  const BodyPlacement& place = system_->skeleton().placeOf(body);
   if (place.segment == 0) return Vector3d::Zero();
   return centreIn(base_, place, body,
-                  movement(*arm_, place.segment, coordinates_.front().index, q).derivative);
+                  movement(*system_, place.segment, coordinates_.front().index, q).derivative);
 }
 
 void EncompassingModel::findBodies(MovingCoordinate& at) const {
   for (const Body& body : base_.bodies) {
-    const BodyPlacement& place = arm_->skeleton().placeOf(body.name);
+    const BodyPlacement& place = system_->skeleton().placeOf(body.name);
     if (place.segment == 0 || !(body.mass > 0)) continue;
-    const Movement moved = movement(*arm_, place.segment, at.index, at.middle());
+    const Movement moved = movement(*system_, place.segment, at.index, at.middle());
     const Eigen::Matrix3d turn = moved.derivative.R * moved.at.R.transpose();  // ω×
     const Vector3d omega(turn(2, 1), turn(0, 2), turn(1, 0));
     const Vector3d centre = centreIn(base_, place, body.name, moved.derivative);
@@ -84,11 +85,11 @@ void EncompassingModel::findBodies(MovingCoordinate& at) const {
   }
 }
 
-Eigen::MatrixXd EncompassingModel::momentArms(const MusculoskeletalSystem& arm) const {
-  const auto n = static_cast<Index>(arm.numMuscles());
+Eigen::MatrixXd EncompassingModel::momentArms(const MusculoskeletalSystem& system) const {
+  const auto n = static_cast<Index>(system.numMuscles());
   Eigen::MatrixXd result(n, static_cast<Index>(coordinates_.size()));
   for (std::size_t k = 0; k < coordinates_.size(); ++k) {
-    VectorXd q = arm.skeleton().defaultValues();
+    VectorXd q = system.skeleton().defaultValues();
     q[coordinates_[k].index] = coordinates_[k].middle();
     Trajectory still;
     still.time = {0};
@@ -96,15 +97,16 @@ Eigen::MatrixXd EncompassingModel::momentArms(const MusculoskeletalSystem& arm) 
     still.qDot = VectorXd::Zero(q.size());
     still.fibreLength = VectorXd::Ones(n);
     still.activation = VectorXd::Zero(n);
-    result.col(static_cast<Index>(k)) = reportMuscles(arm, still, coordinates_[k].index).momentArm;
+    result.col(static_cast<Index>(k)) =
+        reportMuscles(system, still, coordinates_[k].index).momentArm;
   }
   return result;
 }
 
 void EncompassingModel::findGroups() {
-  const Eigen::MatrixXd all = momentArms(*arm_);
-  for (std::size_t i = 0; i < arm_->numMuscles(); ++i) {
-    const std::string& muscle = arm_->muscles()[i].name;
+  const Eigen::MatrixXd all = momentArms(*system_);
+  for (std::size_t i = 0; i < system_->numMuscles(); ++i) {
+    const std::string& muscle = system_->muscles()[i].name;
     std::size_t length = 0;
     while (length < muscle.size() && std::isupper(static_cast<unsigned char>(muscle[length]))) {
       ++length;

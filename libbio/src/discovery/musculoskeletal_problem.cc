@@ -35,22 +35,23 @@ std::vector<std::string> withFlatTops(const std::vector<Trial>& trials) {
 }
 
 /// There will be thousands of simulations.
-SystemOptions withTables(SystemOptions arm) {
-  arm.tabulatePaths = true;
-  return arm;
+SystemOptions withTables(SystemOptions system) {
+  system.tabulatePaths = true;
+  return system;
 }
 
 }  // namespace
 
-std::vector<Observable> measuredOutputs(const std::vector<Trial>& trials, const SystemOptions& arm,
+std::vector<Observable> measuredOutputs(const std::vector<Trial>& trials,
+                                        const SystemOptions& system,
                                         const std::vector<std::string>& coordinates) {
   std::vector<Observable> sensors;
   const auto add = [&](const Observable& what) {
     if (std::find(sensors.begin(), sensors.end(), what) == sensors.end()) sensors.push_back(what);
   };
   for (const std::string& name : coordinates) {
-    const bool isPrescribed =
-        std::find(arm.prescribed.begin(), arm.prescribed.end(), name) != arm.prescribed.end();
+    const bool isPrescribed = std::find(system.prescribed.begin(), system.prescribed.end(), name) !=
+                              system.prescribed.end();
     const bool isMeasured = std::any_of(trials.begin(), trials.end(), [&](const Trial& trial) {
       return trial.measurementOf(ofCoordinate(name));
     });
@@ -79,14 +80,14 @@ std::vector<std::string> coordinatesInQuestion(const std::vector<std::string>& f
   return names;
 }
 
-MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemOptions& arm,
+MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemOptions& system,
                                                const CoordinateNames& coordinates,
                                                std::vector<Trial> trials,
                                                MusculoskeletalProblemOptions options)
-    : encompassing_(encompassingModel(model, withTables(arm), coordinates, options.without,
+    : encompassing_(encompassingModel(model, withTables(system), coordinates, options.without,
                                       options.formula, options.formulaAxis,
                                       options.sensors.empty()
-                                          ? measuredOutputs(trials, arm, coordinates.all)
+                                          ? measuredOutputs(trials, system, coordinates.all)
                                           : options.sensors)),
       options_(std::move(options)),
       quantities_(encompassing_.quantities()),
@@ -127,7 +128,7 @@ void MusculoskeletalProblem::addTrial(Trial trial) {
   OfTrial one;
   one.trial = std::move(trial);
   collectSamples(one);
-  one.recorded = recordedTrial(one.trial, encompassing_.arm(), options_.simulation);
+  one.recorded = recordedTrial(one.trial, encompassing_.system(), options_.simulation);
   one.recorded.simulation.progress = {};
   one.known = experimentalConditionsOf(one.trial, encompassing_);
   addNodes(one);
@@ -136,7 +137,7 @@ void MusculoskeletalProblem::addTrial(Trial trial) {
 }
 
 /// By time, and at one time by output.
-void MusculoskeletalProblem::collectSamples(OfTrial& one) const {
+void MusculoskeletalProblem::collectSamples(OfTrial& trial) const {
   struct Sample {
     double time, value;
     std::size_t sensor;
@@ -144,57 +145,58 @@ void MusculoskeletalProblem::collectSamples(OfTrial& one) const {
   std::vector<Sample> samples;
   const auto& sensors = encompassing_.sensors();
   for (std::size_t i = 0; i < sensors.size(); ++i) {
-    const MeasuredChannel* channel = one.trial.measurementOf(sensors[i]);
+    const MeasuredChannel* channel = trial.trial.measurementOf(sensors[i]);
     if (!channel || channel->times.size() == 0) continue;
-    if (options_.usableSeries) requireUsable(one.trial.file, *channel);
+    if (options_.usableSeries) requireUsable(trial.trial.file, *channel);
     for (Index k = 0; k < channel->times.size(); ++k)
       samples.push_back({channel->times[k], channel->values[k], i});
-    one.series.push_back({i, {channel->times.begin(), channel->times.end()}, {}});
+    trial.series.push_back({i, {channel->times.begin(), channel->times.end()}, {}});
   }
   if (samples.empty()) {
     std::string names;
     for (const Observable& what : sensors)
       names += (names.empty() ? "'" : ", '") + nameOf(what) + "'";
-    throw std::invalid_argument(fmt::format("{}: no measured value of {}", one.trial.file, names));
+    throw std::invalid_argument(
+        fmt::format("{}: no measured value of {}", trial.trial.file, names));
   }
   std::stable_sort(samples.begin(), samples.end(),
                    [](const Sample& a, const Sample& b) { return a.time < b.time; });
-  one.measured.resize(static_cast<Index>(samples.size()));
+  trial.measured.resize(static_cast<Index>(samples.size()));
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    one.times.push_back(samples[k].time);
-    one.measured[static_cast<Index>(k)] = samples[k].value;
-    if (sensors.size() > 1) one.outputs.push_back(static_cast<int>(samples[k].sensor));
-    for (Series& series : one.series)
+    trial.times.push_back(samples[k].time);
+    trial.measured[static_cast<Index>(k)] = samples[k].value;
+    if (sensors.size() > 1) trial.outputs.push_back(static_cast<int>(samples[k].sensor));
+    for (Series& series : trial.series)
       if (series.sensor == samples[k].sensor) series.samples.push_back(static_cast<Index>(k));
   }
 }
 
-void MusculoskeletalProblem::addNodes(OfTrial& one) const {
-  const double first = one.trial.times[0], last = one.times.back();
+void MusculoskeletalProblem::addNodes(OfTrial& trial) const {
+  const double first = trial.trial.times[0], last = trial.times.back();
   const double intervals = std::max(1.0, std::ceil((last - first) / options_.latentSpacing - 1e-9));
   for (int k = 0; k <= static_cast<int>(intervals); ++k)
-    one.nodeTimes.push_back(first + k * options_.latentSpacing);
+    trial.nodeTimes.push_back(first + k * options_.latentSpacing);
   for (std::size_t axis = 0; axis < axes_.size(); ++axis)
-    for (const double t : one.nodeTimes) one.nodes.push_back({t, axis});
-  one.heldMass = VectorXd::Zero(static_cast<Index>(one.nodeTimes.size()));
-  if (!encompassing_.hasOneCoordinate() || one.series.front().sensor != 0) return;
-  const MeasuredChannel* channel = one.trial.measurementOf(encompassing_.sensors().front());
+    for (const double t : trial.nodeTimes) trial.nodes.push_back({t, axis});
+  trial.heldMass = VectorXd::Zero(static_cast<Index>(trial.nodeTimes.size()));
+  if (!encompassing_.hasOneCoordinate() || trial.series.front().sensor != 0) return;
+  const MeasuredChannel* channel = trial.trial.measurementOf(encompassing_.sensors().front());
   if (channel->what.isCoordinate())
-    one.heldMass =
-        weightOfHeldMass(encompassing_, one.series.front().times, channel->values, one.nodeTimes);
+    trial.heldMass = weightOfHeldMass(encompassing_, trial.series.front().times, channel->values,
+                                      trial.nodeTimes);
 }
 
-void MusculoskeletalProblem::addStarts(OfTrial& one) {
+void MusculoskeletalProblem::addStarts(OfTrial& trial) {
   const auto& coordinates = encompassing_.coordinates();
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    if (encompassing_.arm().isPrescribed(coordinates[i].index)) continue;
+    if (encompassing_.system().isPrescribed(coordinates[i].index)) continue;
     const Coordinate& observed = coordinates[i].coordinate;
     const bool turns = observed.isRotation;
     const double length = turns ? 1 : 0.125;  // [m] that stand for a radian
     const Observable what = ofCoordinate(observed.name);
     const auto& sensors = encompassing_.sensors();
     const auto sensor = std::find(sensors.begin(), sensors.end(), what);
-    const MeasuredChannel* channel = one.trial.measurementOf(what);
+    const MeasuredChannel* channel = trial.trial.measurementOf(what);
     const bool isMeasured = sensor != sensors.end() && channel && channel->times.size() > 0;
     Start start{i, 0, 0, isMeasured ? static_cast<int>(sensor - sensors.begin()) : -1};
     double shown = 0;
@@ -210,7 +212,7 @@ void MusculoskeletalProblem::addStarts(OfTrial& one) {
         addOwnQuantity(observed.name + ".speed",
                        {"", turns ? "rad/s" : "m/s", 0, turns ? -10.0 : -2.0, turns ? 10.0 : 2.0,
                         std::max(options_.speedSd * length, shown), false});
-    one.starts.push_back(start);
+    trial.starts.push_back(start);
   }
 }
 
@@ -225,33 +227,35 @@ std::size_t MusculoskeletalProblem::addOwnQuantity(const std::string& what, Quan
 }
 
 void MusculoskeletalProblem::separateWhatTrialsTellApart() {
-  // the arm answers a push at once, but late muscles late; a clock that is off shifts both
-  const bool isPushed = std::any_of(trials_.begin(), trials_.end(), [&](const OfTrial& one) {
-    return std::any_of(one.trial.applied.begin(), one.trial.applied.end(), [&](const auto& push) {
-      const auto& all = encompassing_.coordinates();
-      return std::any_of(all.begin(), all.end(),
-                         [&](const auto& at) { return at.coordinate.name == push.coordinate; }) &&
-             push.values.maxCoeff() > push.values.minCoeff();
-    });
+  // the limb answers a push at once, but late muscles late; a clock that is off shifts both
+  const bool isPushed = std::any_of(trials_.begin(), trials_.end(), [&](const OfTrial& trial) {
+    return std::any_of(
+        trial.trial.applied.begin(), trial.trial.applied.end(), [&](const auto& push) {
+          const auto& all = encompassing_.coordinates();
+          return std::any_of(
+                     all.begin(), all.end(),
+                     [&](const auto& at) { return at.coordinate.name == push.coordinate; }) &&
+                 push.values.maxCoeff() > push.values.minCoeff();
+        });
   });
   if (isPushed) encompassing_.separate("delay", "clock");
   // gravity's moment grows with a mass, that of a force on the hand does not
-  const bool isLoaded = std::any_of(trials_.begin(), trials_.end(), [&](const OfTrial& one) {
-    return one.trial.known.massInHand != trials_.front().trial.known.massInHand;
+  const bool isLoaded = std::any_of(trials_.begin(), trials_.end(), [&](const OfTrial& trial) {
+    return trial.trial.known.massInHand != trials_.front().trial.known.massInHand;
   });
   if (isLoaded) encompassing_.separate("tilt", "handforce");
 }
 
 double MusculoskeletalProblem::activationLag() const {
   double sum = 0, count = 0;
-  for (const OfTrial& one : trials_) {
-    const auto& times = one.recorded.excitation.times();
-    VectorXd u(one.recorded.excitation.numMuscles());
+  for (const OfTrial& trial : trials_) {
+    const auto& times = trial.recorded.excitation.times();
+    VectorXd u(trial.recorded.excitation.numMuscles());
     std::size_t hint = 0;
     for (const double t : times) {
-      one.recorded.excitation.at(t, hint, u);
+      trial.recorded.excitation.at(t, hint, u);
       for (Index i = 0; i < u.size(); ++i) {
-        sum += encompassing_.arm().muscles()[static_cast<std::size_t>(i)].activation.lag(u[i]);
+        sum += encompassing_.system().muscles()[static_cast<std::size_t>(i)].activation.lag(u[i]);
         ++count;
       }
     }
@@ -282,7 +286,7 @@ MatrixXd MusculoskeletalProblem::inputs(int trial) const {
 }
 
 std::vector<std::string> MusculoskeletalProblem::inputNames() const {
-  return muscleNames(encompassing_.arm());
+  return muscleNames(encompassing_.system());
 }
 
 std::unique_ptr<info::discover::DiscoveryProblem> MusculoskeletalProblem::withFormula(
@@ -297,9 +301,9 @@ std::unique_ptr<info::discover::DiscoveryProblem> MusculoskeletalProblem::withFo
       options.without.push_back(candidates()[c].id);
   }
   std::vector<Trial> trials;
-  for (const OfTrial& one : trials_) trials.push_back(one.trial);
+  for (const OfTrial& trial : trials_) trials.push_back(trial.trial);
   auto widened = std::make_unique<MusculoskeletalProblem>(
-      encompassing_.base(), encompassing_.armOptions(), encompassing_.coordinateNames(),
+      encompassing_.base(), encompassing_.systemOptions(), encompassing_.coordinateNames(),
       std::move(trials), std::move(options));
   if (!widened->encompassing().knows("formula")) return nullptr;
   return widened;

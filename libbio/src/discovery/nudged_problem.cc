@@ -11,14 +11,14 @@ using Eigen::VectorXd;
 class MusculoskeletalProblem::Nudged final : public info::discover::DiscoveryProblem {
  public:
   Nudged(const MusculoskeletalProblem& of, double frequency) : of_(of) {
-    for (const OfTrial& one : of.trials_) {
+    for (const OfTrial& trial : of.trials_) {
       std::vector<Nudge>& nudges = nudges_.emplace_back();
-      for (const Series& series : one.series) {
+      for (const Series& series : trial.series) {
         const Observable& what = of.encompassing_.sensors()[series.sensor];
         if (!what.isCoordinate()) continue;
-        nudges.push_back(nudgeTo(of.encompassing_.arm(),
-                                 of.encompassing_.arm().skeleton().indexOf(what.of), series.times,
-                                 one.measured(series.samples), frequency));
+        nudges.push_back(nudgeTo(of.encompassing_.system(),
+                                 of.encompassing_.system().skeleton().indexOf(what.of),
+                                 series.times, trial.measured(series.samples), frequency));
       }
     }
   }
@@ -64,8 +64,8 @@ class MusculoskeletalProblem::Nudged final : public info::discover::DiscoveryPro
 std::unique_ptr<info::discover::DiscoveryProblem> MusculoskeletalProblem::nudged(
     double frequency) const {
   bool isMeasured = false;
-  for (const OfTrial& one : trials_) {
-    for (const Series& series : one.series) {
+  for (const OfTrial& trial : trials_) {
+    for (const Series& series : trial.series) {
       if (!encompassing_.sensors()[series.sensor].isCoordinate()) continue;
       isMeasured = true;
       if (series.times.size() < 4) return nullptr;

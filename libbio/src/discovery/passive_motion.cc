@@ -36,7 +36,7 @@ ExternalForce sweepingForce(const Trial& trial, const EncompassingModel& model, 
                             double high) {
   const ParameterCatalogue::Setting setting =
       model.settingAt(model.nominal() + experimentalConditionsOf(trial, model), {});
-  MusculoskeletalSystem system = model.armOf(setting);
+  MusculoskeletalSystem system = model.systemOf(setting);
   const ExcitationSignal excitation = excitationOf(trial, system);
   // a course much finer than the steps, since its third derivative jumps
   const auto steps = std::max<Index>(trial.times.size() - 1,
@@ -102,13 +102,13 @@ std::string sentenceOf(const Trial& moved, const EncompassingModel& model, doubl
 
 std::vector<PlannedExperiment> passiveMotions(const Trial& trial, const EncompassingModel& model) {
   std::vector<PlannedExperiment> planned;
-  if (model.arm().skeleton().numCoordinates() != 1) return planned;
+  if (model.system().skeleton().numCoordinates() != 1) return planned;
   const Coordinate& coordinate = model.coordinate();
   const double span = coordinate.rangeMax - coordinate.rangeMin;
   if (!std::isfinite(span) || !(span > 0)) return planned;
   const auto can = [&](const char* change) {
     return std::any_of(model.quantities().begin(), model.quantities().end(),
-                       [&](const auto& one) { return one.name == change; });
+                       [&](const auto& quantity) { return quantity.name == change; });
   };
   for (const double turn : {0.0, -45.0}) {
     if (turn != 0 && !can("known.turn")) continue;

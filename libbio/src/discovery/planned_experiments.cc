@@ -57,7 +57,7 @@ std::vector<PlannedExperiment> plannedExperiments(const Trial& trial,
   }
   for (const MovingCoordinate& at : model.coordinates()) {
     const Coordinate& coordinate = at.coordinate;
-    if (model.arm().isPrescribed(at.index)) continue;
+    if (model.system().isPrescribed(at.index)) continue;
     const bool turns = coordinate.isRotation;
     for (const double size : {0.25, 0.5, 1.0}) {
       planned.push_back(

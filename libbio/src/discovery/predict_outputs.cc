@@ -25,9 +25,9 @@ struct MusculoskeletalProblem::Columns {
 };
 
 MusculoskeletalProblem::Columns MusculoskeletalProblem::columnsOf(
-    const OfTrial& one, const VectorXd& values, const std::vector<std::size_t>& wanted) const {
+    const OfTrial& trial, const VectorXd& values, const std::vector<std::size_t>& wanted) const {
   const std::size_t own = encompassing_.quantities().size();
-  const VectorXd modelValues = values.head(static_cast<Index>(own)) + one.known;
+  const VectorXd modelValues = values.head(static_cast<Index>(own)) + trial.known;
   Columns columns;
   for (const std::size_t quantity : wanted) {
     ParameterDirection direction;
@@ -37,7 +37,7 @@ MusculoskeletalProblem::Columns MusculoskeletalProblem::columnsOf(
       kind = encompassing_.kindOf(quantity);
       direction = encompassing_.direction(modelValues, quantity);
     }
-    for (const Start& start : one.starts) {
+    for (const Start& start : trial.starts) {
       const int c = encompassing_.coordinates()[start.coordinate].index;
       const bool isShown = kind == Meaning::Kind::bias || kind == Meaning::Kind::gain;
       const bool shows =
@@ -56,17 +56,18 @@ MusculoskeletalProblem::Columns MusculoskeletalProblem::columnsOf(
   return columns;
 }
 
-MatrixXd MusculoskeletalProblem::latentScale(const OfTrial& one, const MusculoskeletalSystem& arm,
+MatrixXd MusculoskeletalProblem::latentScale(const OfTrial& trial,
+                                             const MusculoskeletalSystem& system,
                                              const Trajectory& motion) const {
   Trajectory atNodes;  // the nearest rows
   const auto rows = static_cast<Index>(motion.time.size());
-  const auto numTimes = static_cast<Index>(one.nodeTimes.size());
+  const auto numTimes = static_cast<Index>(trial.nodeTimes.size());
   atNodes.q.resize(motion.q.rows(), numTimes);
   atNodes.qDot.resize(motion.qDot.rows(), numTimes);
   atNodes.fibreLength.resize(motion.fibreLength.rows(), numTimes);
   atNodes.activation.resize(motion.activation.rows(), numTimes);
   for (Index k = 0; k < numTimes; ++k) {
-    const double at = one.nodeTimes[static_cast<std::size_t>(k)] - motion.time.front();
+    const double at = trial.nodeTimes[static_cast<std::size_t>(k)] - motion.time.front();
     const Index row = std::clamp<Index>(
         static_cast<Index>(std::lround(at / options_.simulation.step)), 0, rows - 1);
     atNodes.q.col(k) = motion.q.col(row);
@@ -75,11 +76,11 @@ MatrixXd MusculoskeletalProblem::latentScale(const OfTrial& one, const Musculosk
     atNodes.activation.col(k) = motion.activation.col(row);
   }
   const auto axes = static_cast<Index>(axes_.size());
-  const auto muscles = static_cast<Index>(arm.numMuscles());
+  const auto muscles = static_cast<Index>(system.numMuscles());
   MatrixXd scale = MatrixXd::Zero(axes * numTimes, muscles + axes);
   for (Index a = 0; a < axes; ++a) {
     const int c = encompassing_.coordinates()[static_cast<std::size_t>(a)].index;
-    const MuscleReport report = reportMuscles(arm, atNodes, c);
+    const MuscleReport report = reportMuscles(system, atNodes, c);
     scale.block(a * numTimes, 0, numTimes, muscles) =
         report.momentArm.cwiseProduct(report.tendonForce).transpose();
     scale.block(a * numTimes, muscles + a, numTimes, 1).setConstant(options_.latentFloor);
@@ -114,14 +115,14 @@ class MusculoskeletalProblem::Run final : public Simulation {
         for (const MovingCoordinate& at : of.encompassing_.coordinates())
           options_.externalNodes.coordinates.push_back(at.index);
       }
-      arm_.emplace(of.encompassing_.armOf(setting_));
-      sensors_ = of.sensedBy(*arm_, one_, values);
+      system_.emplace(of.encompassing_.systemOf(setting_));
+      sensors_ = of.sensedBy(*system_, one_, values);
       for (const SensedMotion& sensor : sensors_) {
         options_.reactions = options_.reactions || sensor.needsReactions();
         options_.muscles = options_.muscles || sensor.needsMuscles();
       }
-      excitation_ = of.excitationFor(one_, *arm_);
-      run_.emplace(*arm_, setting_, excitation_, options_);
+      excitation_ = of.excitationFor(one_, *system_);
+      run_.emplace(*system_, setting_, excitation_, options_);
     } catch (const std::exception&) {
       return;  // outside the model's domain
     }
@@ -150,7 +151,7 @@ class MusculoskeletalProblem::Run final : public Simulation {
     SensitivityTrajectory s;
     try {
       s = run_->sensitivities(columns_.directions);
-      if (latentToo_) result.scale = of_.latentScale(one_, *arm_, s.motion);
+      if (latentToo_) result.scale = of_.latentScale(one_, *system_, s.motion);
     } catch (const std::exception&) {
       result.outputs.setConstant(nan);
       result.speeds.setConstant(nan);
@@ -254,7 +255,7 @@ class MusculoskeletalProblem::Run final : public Simulation {
   Columns columns_;
   VectorXd outputs_, speeds_;
   SensitivityOptions options_;
-  std::optional<MusculoskeletalSystem> arm_;
+  std::optional<MusculoskeletalSystem> system_;
   ExcitationSignal excitation_;
   std::optional<stepping::SensitivityRun> run_;  ///< empty: outside the model's domain
   std::vector<SensedMotion> sensors_;            ///< of the trial's series

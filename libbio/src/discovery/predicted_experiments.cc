@@ -35,7 +35,7 @@ double PredictedExperiment::least() const {
   return nats.empty() ? 0 : *std::min_element(nats.begin(), nats.end());
 }
 
-std::vector<PredictedExperiment> predictExperiments(const Model& model, const SystemOptions& arm,
+std::vector<PredictedExperiment> predictExperiments(const Model& model, const SystemOptions& system,
                                                     const Trial& trial,
                                                     const MusculoskeletalProblemOptions& options,
                                                     const MusculoskeletalProblem& data,
@@ -45,11 +45,11 @@ std::vector<PredictedExperiment> predictExperiments(const Model& model, const Sy
   const EncompassingModel& encompassing = data.encompassing();
   const std::vector<std::string> coordinates = encompassing.coordinateNames();
   std::vector<PlannedExperiment> experiments = plannedExperiments(trial, data.encompassing());
-  for (PlannedExperiment& one : passiveMotions(trial, data.encompassing()))
-    experiments.push_back(std::move(one));
+  for (PlannedExperiment& experiment : passiveMotions(trial, data.encompassing()))
+    experiments.push_back(std::move(experiment));
   for (const PlannedExperiment& experiment : experiments) {
-    const MusculoskeletalProblem planned(model, arm, coordinates, {experiment.trial}, options);
-    // where the arm would go
+    const MusculoskeletalProblem planned(model, system, coordinates, {experiment.trial}, options);
+    // where the system would go
     Eigen::VectorXd values = info::discover::nominalValues(planned);
     const auto own = static_cast<Index>(data.encompassing().quantities().size());
     values.head(own) = verdict.values.head(own);

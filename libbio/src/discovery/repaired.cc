@@ -18,9 +18,9 @@ using info::discover::Verdict;
 
 /// Replays are of the paths themselves.
 SystemOptions withoutTables(const MusculoskeletalProblem& data) {
-  SystemOptions arm = data.encompassing().armOptions();
-  arm.tabulatePaths = false;
-  return arm;
+  SystemOptions system = data.encompassing().systemOptions();
+  system.tabulatePaths = false;
+  return system;
 }
 
 VectorXd ownValues(const MusculoskeletalProblem& data, const VectorXd& values) {
@@ -76,7 +76,7 @@ Compared pooled(const std::vector<Observable>& outputs, const TrialReplay& repla
     all.rms = std::sqrt(squares / static_cast<double>(all.samples));
   };
   for (const auto& [name, error] : replay.errors) add(ofCoordinate(name), error);
-  for (const ChannelError& one : replay.channelErrors) add(one.what, one.error);
+  for (const ChannelError& error : replay.channelErrors) add(error.what, error.error);
   return all.samples > 0 ? all : Compared{};
 }
 
@@ -146,21 +146,21 @@ std::vector<RepairedTrial> recordedTrials(const MusculoskeletalProblem& data,
   const double nominalStep = stepOf(base, data.options().simulation.integrator, step);
   std::vector<RepairedTrial> trials;
   for (int i = 0; i < data.numTrials(); ++i) {
-    RepairedTrial one;
-    one.index = static_cast<std::size_t>(i);
-    one.isHeldOut = std::find(heldOut.begin(), heldOut.end(), i) != heldOut.end();
-    one.starts = data.startsAt(i, verdict.values);
-    const Compared nominal = replayed(data, base, data.trial(i), nominalStep, {}, verdict.outputSd);
-    one.nominal = nominal.rms;
-    one.samples = nominal.samples > 0 ? nominal.samples : data.measured(i).size();
-    one.floor = verdict.outputSd.sd(0);
+    RepairedTrial trial;
+    trial.index = static_cast<std::size_t>(i);
+    trial.isHeldOut = std::find(heldOut.begin(), heldOut.end(), i) != heldOut.end();
+    trial.starts = data.startsAt(i, verdict.values);
+    const Compared nominal = replayed(data, base, data.trial(i), nominalStep, {}, verdict.sds);
+    trial.nominal = nominal.rms;
+    trial.samples = nominal.samples > 0 ? nominal.samples : data.measured(i).size();
+    trial.floor = verdict.sds.sd(0);
     VectorXd difference = data.outputs(i, verdict.values, {}) - data.measured(i);
     if (data.encompassing().sensors().size() > 1) {
-      verdict.outputSd.whiten(data.outputOfSample(i), difference);
-      difference *= verdict.outputSd.sd(0);
+      verdict.sds.whiten(data.outputOfSample(i), difference);
+      difference *= verdict.sds.sd(0);
     }
-    one.fitted = std::sqrt(difference.squaredNorm() / static_cast<double>(difference.size()));
-    trials.push_back(std::move(one));
+    trial.fitted = std::sqrt(difference.squaredNorm() / static_cast<double>(difference.size()));
+    trials.push_back(std::move(trial));
   }
   return trials;
 }
@@ -180,7 +180,7 @@ Repaired repairedModel(const MusculoskeletalProblem& data, const Verdict& verdic
   model.fitted = {data.options().simulation.step, {}};
   const bool isDriven = data.options().trialsAreCut || concernsTrials(result.added) ||
                         data.timedForce(0, verdict.values).size() > 0;
-  const MusculoskeletalSystem arm(model, withoutTables(data));
+  const MusculoskeletalSystem system(model, withoutTables(data));
   for (RepairedTrial& one : result.trials) {
     const auto index = static_cast<int>(one.index);
     Trial trial = data.trial(index);
@@ -196,12 +196,12 @@ Repaired repairedModel(const MusculoskeletalProblem& data, const Verdict& verdic
       }
       for (std::size_t i = 0; i < outputs.size(); ++i)
         trial = asTrueSensor(std::move(trial), outputs[i], result.added.sensors[i]);
-      one.driven = drivenTable(trial, arm, result.added.mapping);
+      one.driven = drivenTable(trial, system, result.added.mapping);
       trial = drivenTrial(*one.driven, trial, model);
       if (outputs.size() == 1) one.floor /= 1 + result.added.sensors.front().gain;
     }
     const Compared after =
-        replayed(data, model, trial, data.options().simulation.step, one.starts, verdict.outputSd);
+        replayed(data, model, trial, data.options().simulation.step, one.starts, verdict.sds);
     one.after = after.rms;
     if (after.samples > 0) one.samples = after.samples;
   }
@@ -227,22 +227,23 @@ std::vector<FittedNumber> fittedNumbers(const MusculoskeletalProblem& data,
   std::vector<FittedNumber> numbers = info::discover::fittedNumbers(data, verdict);
   const EncompassingModel& encompassing = data.encompassing();
   const std::string ending = " factor";
-  for (FittedNumber& one : numbers) {
-    if (one.quantity >= encompassing.quantities().size() || !one.name.ends_with(ending)) continue;
-    const std::string stem = one.name.substr(0, one.name.size() - ending.size());
+  for (FittedNumber& number : numbers) {
+    if (number.quantity >= encompassing.quantities().size() || !number.name.ends_with(ending))
+      continue;
+    const std::string stem = number.name.substr(0, number.name.size() - ending.size());
     const auto& known = encompassing.parameters().parameters();
     const auto at = std::find_if(known.begin(), known.end(),
                                  [&](const ModelParameter& p) { return p.name == stem; });
     if (at == known.end()) continue;
     const ParameterDirection direction =
-        encompassing.direction(ownValues(data, verdict.values), one.quantity);
+        encompassing.direction(ownValues(data, verdict.values), number.quantity);
     if (direction.empty()) continue;
-    one.name = stem;
-    one.unit = at->unit;
-    one.nominal = at->value;
-    one.estimate = direction.front().value;
-    one.sd *= std::abs(direction.front().weight);
-    one.prior *= std::abs(at->value);
+    number.name = stem;
+    number.unit = at->unit;
+    number.nominal = at->value;
+    number.estimate = direction.front().value;
+    number.sd *= std::abs(direction.front().weight);
+    number.prior *= std::abs(at->value);
   }
   return numbers;
 }

@@ -22,40 +22,40 @@ VectorXd MusculoskeletalProblem::timedForce(int trial, const VectorXd& values) c
   return withTimedForces(of(trial), values, {});
 }
 
-VectorXd MusculoskeletalProblem::withTimedForces(const OfTrial& one, const VectorXd& values,
+VectorXd MusculoskeletalProblem::withTimedForces(const OfTrial& trial, const VectorXd& values,
                                                  const VectorXd& latent) const {
   VectorXd sum = latent;
   for (const TimedForce& force : encompassing_.timedForces()) {
     const double size = values[static_cast<Index>(force.amplitude)];
     if (size == 0) continue;
-    if (sum.size() == 0) sum = VectorXd::Zero(static_cast<Index>(one.nodes.size()));
-    const auto numTimes = static_cast<Index>(one.nodeTimes.size());
+    if (sum.size() == 0) sum = VectorXd::Zero(static_cast<Index>(trial.nodes.size()));
+    const auto numTimes = static_cast<Index>(trial.nodeTimes.size());
     const Index first = static_cast<Index>(force.coordinate) * numTimes;
     for (Index k = 0; k < numTimes; ++k) {
-      const double share = timedShare(one.nodeTimes[static_cast<std::size_t>(k)],
+      const double share = timedShare(trial.nodeTimes[static_cast<std::size_t>(k)],
                                       values[static_cast<Index>(force.time)], force.ends)
                                .value;
-      sum[first + k] += size * share * (force.of == TimedForce::Of::mass ? one.heldMass[k] : 1.0);
+      sum[first + k] += size * share * (force.of == TimedForce::Of::mass ? trial.heldMass[k] : 1.0);
     }
   }
   return sum;
 }
 
-MatrixXd MusculoskeletalProblem::timedDirections(const OfTrial& one, const VectorXd& values,
+MatrixXd MusculoskeletalProblem::timedDirections(const OfTrial& trial, const VectorXd& values,
                                                  const std::vector<std::size_t>& wanted) const {
   MatrixXd nodes;
   for (std::size_t j = 0; j < wanted.size(); ++j) {
     for (const TimedForce& force : encompassing_.timedForces()) {
       if (wanted[j] != force.amplitude && wanted[j] != force.time) continue;
-      const auto rows = static_cast<Index>(one.nodes.size());
+      const auto rows = static_cast<Index>(trial.nodes.size());
       if (nodes.size() == 0) nodes = MatrixXd::Zero(rows, static_cast<Index>(wanted.size()));
       const double size = values[static_cast<Index>(force.amplitude)];
-      const auto numTimes = static_cast<Index>(one.nodeTimes.size());
+      const auto numTimes = static_cast<Index>(trial.nodeTimes.size());
       const Index first = static_cast<Index>(force.coordinate) * numTimes;
       for (Index k = 0; k < numTimes; ++k) {
-        const TimedShare share = timedShare(one.nodeTimes[static_cast<std::size_t>(k)],
+        const TimedShare share = timedShare(trial.nodeTimes[static_cast<std::size_t>(k)],
                                             values[static_cast<Index>(force.time)], force.ends);
-        const double weight = force.of == TimedForce::Of::mass ? one.heldMass[k] : 1.0;
+        const double weight = force.of == TimedForce::Of::mass ? trial.heldMass[k] : 1.0;
         nodes(first + k, static_cast<Index>(j)) =
             weight * (wanted[j] == force.amplitude ? share.value : size * share.inTime);
       }
@@ -65,15 +65,15 @@ MatrixXd MusculoskeletalProblem::timedDirections(const OfTrial& one, const Vecto
 }
 
 ParameterCatalogue::Setting MusculoskeletalProblem::settingAt(
-    const OfTrial& one, const VectorXd& values, const std::vector<std::size_t>& wanted) const {
+    const OfTrial& trial, const VectorXd& values, const std::vector<std::size_t>& wanted) const {
   if (values.size() != static_cast<Index>(quantities_.size())) {
     throw std::invalid_argument(fmt::format("{} values for {} quantities, must be as many",
                                             values.size(), quantities_.size()));
   }
   const auto own = static_cast<Index>(encompassing_.quantities().size());
   ParameterCatalogue::Setting setting =
-      encompassing_.settingAt(values.head(own) + one.known, wanted);
-  for (const Start& start : one.starts) {
+      encompassing_.settingAt(values.head(own) + trial.known, wanted);
+  for (const Start& start : trial.starts) {
     const int c = encompassing_.coordinates()[start.coordinate].index;
     SensorLaw sensor;
     if (start.sensor >= 0)
@@ -82,70 +82,72 @@ ParameterCatalogue::Setting MusculoskeletalProblem::settingAt(
         (values[static_cast<Index>(start.angle)] - sensor.bias) / (1 + sensor.gain);
     setting.start.qDot[c] = values[static_cast<Index>(start.speed)];
   }
-  if (!encompassing_.arm().prescribed().empty())
-    one.recorded.simulation.prescribed.place(one.trial.times[0], setting.start.q,
-                                             setting.start.qDot);
+  if (!encompassing_.system().prescribed().empty())
+    trial.recorded.simulation.prescribed.place(trial.trial.times[0], setting.start.q,
+                                               setting.start.qDot);
   return setting;
 }
 
-SimulationOptions MusculoskeletalProblem::simulationOf(const OfTrial& one, const VectorXd& values,
+SimulationOptions MusculoskeletalProblem::simulationOf(const OfTrial& trial, const VectorXd& values,
                                                        const VectorXd& latent) const {
-  SimulationOptions simulation = one.recorded.simulation;
+  SimulationOptions simulation = trial.recorded.simulation;
   // a sensor may look behind the last sample
-  double end = one.times.back();
-  for (const Series& series : one.series) {
+  double end = trial.times.back();
+  for (const Series& series : trial.series) {
     const SensorLaw sensor = encompassing_.sensorAt(values, series.sensor);
     end = std::max(end, sensor.measuredAt(series.times.back(), simulation.startTime));
   }
-  if (!encompassing_.arm().prescribed().empty())
-    end = std::min(end, one.trial.times[one.trial.times.size() - 1]);  // beyond, none is given
+  if (!encompassing_.system().prescribed().empty())
+    end = std::min(end, trial.trial.times[trial.trial.times.size() - 1]);  // beyond, none is given
   simulation.duration = end - simulation.startTime;
   if (latent.size() == 0) return simulation;
-  if (latent.size() != static_cast<Index>(one.nodes.size())) {
+  if (latent.size() != static_cast<Index>(trial.nodes.size())) {
     throw std::invalid_argument(
         fmt::format("{} values of the latent force for {} nodes, must be as many", latent.size(),
-                    one.nodes.size()));
+                    trial.nodes.size()));
   }
-  const auto numTimes = static_cast<Index>(one.nodeTimes.size());
-  MatrixXd forces = MatrixXd::Zero(numTimes, encompassing_.arm().skeleton().numCoordinates());
+  const auto numTimes = static_cast<Index>(trial.nodeTimes.size());
+  MatrixXd forces = MatrixXd::Zero(numTimes, encompassing_.system().skeleton().numCoordinates());
   for (std::size_t axis = 0; axis < axes_.size(); ++axis)
     forces.col(encompassing_.coordinates()[axis].index) =
         latent.segment(static_cast<Index>(axis) * numTimes, numTimes);
-  simulation.externalForce = sum(simulation.externalForce, {one.nodeTimes, forces});
+  simulation.externalForce = sum(simulation.externalForce, {trial.nodeTimes, forces});
   return simulation;
 }
 
-// The arm may have muscles that the base model switched off.
-ExcitationSignal MusculoskeletalProblem::excitationFor(const OfTrial& one,
-                                                       const MusculoskeletalSystem& arm) const {
-  return arm.numMuscles() == encompassing_.arm().numMuscles() ? one.recorded.excitation
-                                                              : excitationOf(one.trial, arm);
+// The system may have muscles that the base model switched off.
+ExcitationSignal MusculoskeletalProblem::excitationFor(const OfTrial& trial,
+                                                       const MusculoskeletalSystem& system) const {
+  return system.numMuscles() == encompassing_.system().numMuscles()
+             ? trial.recorded.excitation
+             : excitationOf(trial.trial, system);
 }
 
 MusculoskeletalProblem::Simulated MusculoskeletalProblem::simulate(
-    const OfTrial& one, const VectorXd& values, const VectorXd& latent, double stepFactor,
+    const OfTrial& trial, const VectorXd& values, const VectorXd& latent, double stepFactor,
     const std::vector<Nudge>* nudges) const {
-  ParameterCatalogue::Setting setting = settingAt(one, values, {});
-  SimulationOptions simulation = simulationOf(one, values, withTimedForces(one, values, latent));
+  ParameterCatalogue::Setting setting = settingAt(trial, values, {});
+  SimulationOptions simulation =
+      simulationOf(trial, values, withTimedForces(trial, values, latent));
   if (nudges) {
     for (const Nudge& nudge : *nudges) apply(nudge, setting.model, simulation.externalForce);
   }
   simulation.step *= stepFactor;
-  MusculoskeletalSystem system = encompassing_.armOf(setting);
-  Trajectory motion = simulateSetting(system, setting, excitationFor(one, system), simulation);
+  MusculoskeletalSystem system = encompassing_.systemOf(setting);
+  Trajectory motion = simulateSetting(system, setting, excitationFor(trial, system), simulation);
   return {std::move(system), std::move(motion)};
 }
 
-VectorXd MusculoskeletalProblem::outputsOf(const OfTrial& one, const VectorXd& values,
+VectorXd MusculoskeletalProblem::outputsOf(const OfTrial& trial, const VectorXd& values,
                                            const VectorXd& latent, double stepFactor,
                                            const std::vector<Nudge>* nudges) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  VectorXd y = VectorXd::Constant(static_cast<Index>(one.times.size()), nan);
+  VectorXd y = VectorXd::Constant(static_cast<Index>(trial.times.size()), nan);
   try {
-    const auto [system, motion] = simulate(one, values, latent, stepFactor, nudges);
-    const std::vector<SensedMotion> sensors = sensedBy(system, one, values);
+    const auto [system, motion] = simulate(trial, values, latent, stepFactor, nudges);
+    const std::vector<SensedMotion> sensors = sensedBy(system, trial, values);
     for (std::size_t i = 0; i < sensors.size(); ++i)
-      y(one.series[i].samples) = sensors[i].shown(motion).values;
+      y(trial.series[i].samples) = sensors[i].shown(motion).values;
   } catch (const std::exception&) {
     y.setConstant(nan);  // outside its domain
   }
@@ -153,13 +155,13 @@ VectorXd MusculoskeletalProblem::outputsOf(const OfTrial& one, const VectorXd& v
 }
 
 std::vector<SensedMotion> MusculoskeletalProblem::sensedBy(const MusculoskeletalSystem& system,
-                                                           const OfTrial& one,
+                                                           const OfTrial& trial,
                                                            const VectorXd& values) const {
   std::vector<SensedMotion> sensors;
-  for (const Series& series : one.series) {
+  for (const Series& series : trial.series) {
     sensors.emplace_back(system, encompassing_.sensors()[series.sensor],
                          encompassing_.sensorAt(values, series.sensor), series.times,
-                         one.trial.times[0]);
+                         trial.trial.times[0]);
   }
   return sensors;
 }
@@ -181,15 +183,15 @@ Trajectory MusculoskeletalProblem::inverseDynamics(int trial, const VectorXd& va
                                                    const Trajectory& motion) const {
   const OfTrial& one = of(trial);
   const ParameterCatalogue::Setting setting = settingAt(one, values, {});
-  MusculoskeletalSystem system = encompassing_.armOf(setting);
+  MusculoskeletalSystem system = encompassing_.systemOf(setting);
   const ExcitationSignal driven =
       drivenExcitation(excitationFor(one, system), muscleNames(system), setting.mapping);
   return bio::inverseDynamics(std::move(system), driven, motion.time, motion.q,
                               simulationOf(one, values, withTimedForces(one, values, {})));
 }
 
-MusculoskeletalSystem MusculoskeletalProblem::armAt(int trial, const VectorXd& values) const {
-  return encompassing_.armOf(settingAt(of(trial), values, {}));
+MusculoskeletalSystem MusculoskeletalProblem::systemAt(int trial, const VectorXd& values) const {
+  return encompassing_.systemOf(settingAt(of(trial), values, {}));
 }
 
 std::vector<TrialStart> MusculoskeletalProblem::startsAt(int trial, const VectorXd& values) const {

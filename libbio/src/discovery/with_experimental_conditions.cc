@@ -19,7 +19,7 @@ Eigen::VectorXd experimentalConditionsOf(const Trial& trial,
   const auto change = [&](const std::string& name, double value, const char* why) {
     if (value == 0) return;
     const auto at = std::find_if(quantities.begin(), quantities.end(),
-                                 [&](const auto& one) { return one.name == name; });
+                                 [&](const auto& quantity) { return quantity.name == name; });
     if (at == quantities.end()) {
       throw std::invalid_argument(
           fmt::format("{}: recorded {}, but {}", trial.file, inWords(trial.known), why));
@@ -38,10 +38,10 @@ Eigen::VectorXd experimentalConditionsOf(const Trial& trial,
   return changes;
 }
 
-Model withExperimentalConditions(const Model& model, const SystemOptions& arm,
+Model withExperimentalConditions(const Model& model, const SystemOptions& system,
                                  const CoordinateNames& coordinates, const Trial& trial) {
   if (!trial.known.any()) return model;
-  EncompassingModel encompassing(model, arm, coordinates);
+  EncompassingModel encompassing(model, system, coordinates);
   addExperimentalConditions(encompassing);
   addHandForce(encompassing);  // which the model may have already
   return augmentedModel(encompassing,

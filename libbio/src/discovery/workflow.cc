@@ -27,7 +27,7 @@ SteppedVerdict search(const DiscoveryRequest& request, const std::vector<Trial>&
       asked, [&](double step) -> const info::discover::DiscoveryProblem& {
         problem.simulation.step = step;
         result.data = std::make_unique<MusculoskeletalProblem>(
-            request.model, request.arm, request.coordinates, trials, problem);
+            request.model, request.system, request.coordinates, trials, problem);
         return *result.data;
       });
 }
@@ -137,7 +137,7 @@ DiscoveryResult discover(const DiscoveryRequest& request) {
     options.simulation.step = data.options().simulation.step;
     options.sensors = data.encompassing().sensors();
     result.experiments =
-        predictExperiments(request.model, request.arm, data.trial(0), options, data, verdict);
+        predictExperiments(request.model, request.system, data.trial(0), options, data, verdict);
   }
   return result;
 }

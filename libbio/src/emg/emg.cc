@@ -48,23 +48,25 @@ void checkUnrecorded(const EmgConfig& config) {
   for (const Electrode& electrode : config.electrodes) {
     for (const auto& [muscle, weight] : electrode.muscles) taken.push_back(muscle);
   }
-  for (const UnrecordedMuscle& one : config.unrecorded) {
-    require(std::find(taken.begin(), taken.end(), one.muscle) == taken.end(),
+  for (const UnrecordedMuscle& muscle : config.unrecorded) {
+    require(std::find(taken.begin(), taken.end(), muscle.muscle) == taken.end(),
             fmt::format("muscle '{}': has an electrode or is given twice, must be once without one",
-                        one.muscle));
-    taken.push_back(one.muscle);
-    require(one.factor > 0 && one.factor <= 1,
-            fmt::format("muscle '{}': factor {}, must be > 0 and ≤ 1", one.muscle, one.factor));
-    require(one.constant >= 0 && one.constant <= 1,
-            fmt::format("muscle '{}': constant {}, must be 0 to 1", one.muscle, one.constant));
-    for (const auto& [channel, weight] : one.synergy) {
+                        muscle.muscle));
+    taken.push_back(muscle.muscle);
+    require(
+        muscle.factor > 0 && muscle.factor <= 1,
+        fmt::format("muscle '{}': factor {}, must be > 0 and ≤ 1", muscle.muscle, muscle.factor));
+    require(
+        muscle.constant >= 0 && muscle.constant <= 1,
+        fmt::format("muscle '{}': constant {}, must be 0 to 1", muscle.muscle, muscle.constant));
+    for (const auto& [channel, weight] : muscle.synergy) {
       const bool isKnown =
           std::any_of(config.electrodes.begin(), config.electrodes.end(),
                       [&, &name = channel](const Electrode& e) { return e.channel == name; });
       require(isKnown, fmt::format("muscle '{}': no electrode has the channel '{}', must be one",
-                                   one.muscle, channel));
+                                   muscle.muscle, channel));
       require(weight > 0 && std::isfinite(weight),
-              fmt::format("muscle '{}', electrode '{}': weight {}, must be > 0", one.muscle,
+              fmt::format("muscle '{}', electrode '{}': weight {}, must be > 0", muscle.muscle,
                           channel, weight));
     }
   }
@@ -143,18 +145,18 @@ Eigen::MatrixXd columnsAt(const Recording& recording, const EmgConfig& config,
 
 // Columns of the muscles without an electrode.
 void addUnrecorded(const EmgConfig& config, const Eigen::MatrixXd& byElectrode, EmgResult& out) {
-  for (const UnrecordedMuscle& one : config.unrecorded) {
-    Eigen::VectorXd rows = Eigen::VectorXd::Constant(out.time.size(), one.constant);
+  for (const UnrecordedMuscle& muscle : config.unrecorded) {
+    Eigen::VectorXd rows = Eigen::VectorXd::Constant(out.time.size(), muscle.constant);
     double sum = 0;
-    for (const auto& [channel, weight] : one.synergy) sum += weight;
+    for (const auto& [channel, weight] : muscle.synergy) sum += weight;
     if (sum > 0) rows.setZero();
-    for (const auto& [channel, weight] : one.synergy) {
+    for (const auto& [channel, weight] : muscle.synergy) {
       const auto at =
           std::find_if(config.electrodes.begin(), config.electrodes.end(),
                        [&, &name = channel](const Electrode& e) { return e.channel == name; });
-      rows += one.factor * weight / sum * byElectrode.col(at - config.electrodes.begin());
+      rows += muscle.factor * weight / sum * byElectrode.col(at - config.electrodes.begin());
     }
-    out.muscles.push_back(one.muscle);
+    out.muscles.push_back(muscle.muscle);
     out.excitations.conservativeResize(Eigen::NoChange, out.excitations.cols() + 1);
     out.excitations.rightCols<1>() = rows.cwiseMin(1.0);  // rounding
   }
@@ -173,8 +175,8 @@ std::vector<std::string> warningsOn(const Recording& recording, const EmgConfig&
   if (config.measured) add(*config.measured);
   for (const MeasuredOptions& column : config.columns) add(column);
   std::vector<std::string> out = recording.warnings;
-  for (const ReviewedChannel& one : channels) {
-    const std::string& name = one.channel->name;
+  for (const ReviewedChannel& channel : channels) {
+    const std::string& name = channel.channel->name;
     const bool further = std::any_of(recording.channels.begin(), recording.channels.end(),
                                      [&](const Channel& c) { return c.name == name + " (2)"; });
     if (!further) continue;

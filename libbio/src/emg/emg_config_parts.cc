@@ -17,16 +17,16 @@ const auto unit = [](double x) { return x >= 0 && x <= 1; };
 const auto above0 = [](double x) { return x > 0 && std::isfinite(x); };
 
 // What stands for the signal: one of electrode, synergy and constant.
-void readSource(TomlTable& table, const EmgConfigFile& out, UnrecordedMuscle& one) {
+void readSource(TomlTable& table, const EmgConfigFile& out, UnrecordedMuscle& muscle) {
   const int given = table.has("electrode") + table.has("synergy") + table.has("constant");
   if (given != 1) table.fail("muscle", "needs one of electrode, synergy and constant");
-  if (const auto electrode = table.text("electrode")) one.synergy = {{*electrode, 1.0}};
-  if (table.has("synergy")) one.synergy = table.weights("synergy");
+  if (const auto electrode = table.text("electrode")) muscle.synergy = {{*electrode, 1.0}};
+  if (table.has("synergy")) muscle.synergy = table.weights("synergy");
   const char* source = table.has("electrode") ? "electrode" : "synergy";
-  if (!table.has("constant") && one.synergy.empty()) {
+  if (!table.has("constant") && muscle.synergy.empty()) {
     table.fail(source, "must name at least one electrode");
   }
-  for (const auto& [channel, weight] : one.synergy) {
+  for (const auto& [channel, weight] : muscle.synergy) {
     if (!above0(weight)) table.fail(source, fmt::format("weight of '{}' must be > 0", channel));
     const bool isKnown =
         std::any_of(out.emg.electrodes.begin(), out.emg.electrodes.end(),
@@ -35,11 +35,11 @@ void readSource(TomlTable& table, const EmgConfigFile& out, UnrecordedMuscle& on
       table.fail(source, fmt::format("no [[electrode]] has the channel '{}'", channel));
     }
   }
-  one.factor = table
-                   .number(
-                       "factor", [](double x) { return x > 0 && x <= 1; }, "must be > 0 and ≤ 1")
-                   .value_or(1);
-  one.constant = table.number("constant", unit, "must be 0 to 1").value_or(0);
+  muscle.factor = table
+                      .number(
+                          "factor", [](double x) { return x > 0 && x <= 1; }, "must be > 0 and ≤ 1")
+                      .value_or(1);
+  muscle.constant = table.number("constant", unit, "must be 0 to 1").value_or(0);
   if (table.has("constant") && table.has("factor")) {
     table.fail("factor", "has no effect on a constant");
   }
@@ -92,9 +92,9 @@ std::string fullName(const EmgConfigFile& config, const std::vector<std::string>
                      const std::string& name) {
   if (config.markers->model.empty()) return name;
   std::vector<std::string> meant;
-  for (const std::string& one : markers) {
-    if (one == name) return one;
-    if (one.ends_with("." + name)) meant.push_back(one);
+  for (const std::string& marker : markers) {
+    if (marker == name) return marker;
+    if (marker.ends_with("." + name)) meant.push_back(marker);
   }
   if (meant.size() == 1) return meant.front();
   if (!meant.empty()) {
@@ -116,11 +116,11 @@ std::vector<std::pair<std::string, std::string>> pairsOf(const EmgConfigFile& co
     pairs.emplace_back(point, fullName(config, markers, name));
   }
   if (!config.markers->names.empty()) return pairs;
-  for (const std::string& one : markers) {
-    const std::string own = one.substr(one.find('.') + 1);
-    for (const std::string& point : {own, one}) {
+  for (const std::string& marker : markers) {
+    const std::string own = marker.substr(marker.find('.') + 1);
+    for (const std::string& point : {own, marker}) {
       if (!isMeasured(recording, point)) continue;
-      pairs.emplace_back(point, one);
+      pairs.emplace_back(point, marker);
       break;
     }
   }

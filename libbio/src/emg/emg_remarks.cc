@@ -73,14 +73,14 @@ void addLimits(const EmgConfig& config, const EmgResult& result, std::vector<std
 }
 
 void addUnrecorded(const EmgConfig& config, std::vector<std::string>& out) {
-  for (const UnrecordedMuscle& one : config.unrecorded) {
+  for (const UnrecordedMuscle& muscle : config.unrecorded) {
     std::string text =
-        fmt::format("{} has no electrode: its excitation is {}", one.muscle, sourceOf(one));
-    if (one.latent) {
+        fmt::format("{} has no electrode: its excitation is {}", muscle.muscle, sourceOf(muscle));
+    if (muscle.latent) {
       text += fmt::format(
           ", which a calibration may correct at knots every {:g} s at most, the log-odds by {:g} "
           "(standard deviation)",
-          one.latent->spacing, one.latent->sd);
+          muscle.latent->spacing, muscle.latent->sd);
     }
     out.push_back(text + ".");
   }

@@ -73,18 +73,18 @@ ExternalForce ExternalForce::withOptimalForces(const std::map<std::string, doubl
   return result;
 }
 
-ExternalForce sum(const ExternalForce& one, const ExternalForce& other) {
-  if (one.empty()) return other;
-  if (other.empty()) return one;
+ExternalForce sum(const ExternalForce& force, const ExternalForce& other) {
+  if (force.empty()) return other;
+  if (other.empty()) return force;
   std::vector<double> times;
-  std::set_union(one.times().begin(), one.times().end(), other.times().begin(), other.times().end(),
-                 std::back_inserter(times));
-  Eigen::MatrixXd values(static_cast<Eigen::Index>(times.size()), one.numCoordinates());
+  std::set_union(force.times().begin(), force.times().end(), other.times().begin(),
+                 other.times().end(), std::back_inserter(times));
+  Eigen::MatrixXd values(static_cast<Eigen::Index>(times.size()), force.numCoordinates());
   for (std::size_t k = 0; k < times.size(); ++k) {
     values.row(static_cast<Eigen::Index>(k)) =
-        (one.at(times[k]).value + other.at(times[k]).value).transpose();
+        (force.at(times[k]).value + other.at(times[k]).value).transpose();
   }
-  std::vector<ExternalForce::Control> controls = one.controls();
+  std::vector<ExternalForce::Control> controls = force.controls();
   controls.insert(controls.end(), other.controls().begin(), other.controls().end());
   return {std::move(times), values, std::move(controls)};
 }

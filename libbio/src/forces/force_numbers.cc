@@ -14,8 +14,8 @@ namespace {
 
 template <class Compiled>
 const Compiled* withIndex(const std::vector<Compiled>& all, std::size_t index) {
-  const auto at =
-      std::find_if(all.begin(), all.end(), [&](const Compiled& one) { return one.index == index; });
+  const auto at = std::find_if(all.begin(), all.end(),
+                               [&](const Compiled& compiled) { return compiled.index == index; });
   return at == all.end() ? nullptr : &*at;
 }
 

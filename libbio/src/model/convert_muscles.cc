@@ -37,8 +37,8 @@ double* numberNamed(Parameters& p, std::string_view name) {
   for (const SameNumber& names : sameNumbers) {
     bool isOne = false;
     for (const std::string_view one : names) isOne = isOne || one == name;
-    for (const std::string_view one : names) {
-      if (isOne && i == Parameters::count) i = place(one);
+    for (const std::string_view name : names) {
+      if (isOne && i == Parameters::count) i = place(name);
     }
   }
   return i == Parameters::count ? nullptr : &Parameters::at(p, i);

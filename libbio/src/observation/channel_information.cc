@@ -37,48 +37,48 @@ double usualSd(Kind kind, bool turns) {
 
 }  // namespace
 
-std::vector<ChannelCandidate> usualChannels(const MusculoskeletalSystem& arm) {
+std::vector<ChannelCandidate> usualChannels(const MusculoskeletalSystem& system) {
   std::vector<ChannelCandidate> channels;
   const auto add = [&](Kind kind, const std::string& of, bool turns, int axis = 0) {
     channels.push_back({{kind, of, axis}, usualSd(kind, turns)});
   };
-  const auto& coordinates = arm.skeleton().coordinates();
+  const auto& coordinates = system.skeleton().coordinates();
   for (std::size_t k = 0; k < coordinates.size(); ++k) {
     const Coordinate& c = coordinates[k];
-    if (arm.isPrescribed(static_cast<int>(k))) {
+    if (system.isPrescribed(static_cast<int>(k))) {
       add(Kind::moment, c.name, c.isRotation);
     } else {
       add(Kind::coordinate, c.name, c.isRotation);
       add(Kind::speed, c.name, c.isRotation);
     }
   }
-  for (const SystemMuscle& muscle : arm.muscles()) {
+  for (const SystemMuscle& muscle : system.muscles()) {
     for (const Kind kind :
          {Kind::fibreLength, Kind::pennation, Kind::tendonForce, Kind::activation}) {
       add(kind, muscle.name, false);
     }
   }
-  for (const SystemMarker& marker : arm.markers()) {
+  for (const SystemMarker& marker : system.markers()) {
     if (marker.segment == 0) continue;  // on the ground
     for (int axis = 0; axis < 3; ++axis) add(Kind::marker, marker.name, false, axis);
   }
   return channels;
 }
 
-std::vector<Eigen::MatrixXd> informationOf(const MusculoskeletalSystem& arm,
+std::vector<Eigen::MatrixXd> informationOf(const MusculoskeletalSystem& system,
                                            const std::vector<ChannelCandidate>& candidates,
                                            const std::vector<double>& times,
                                            const SensitivityTrajectory& motion) {
   const auto n = static_cast<Eigen::Index>(times.size());
   std::vector<ObservedSeries> series;
-  for (const ChannelCandidate& one : candidates) {
-    if (!(one.sd > 0)) {
+  for (const ChannelCandidate& candidate : candidates) {
+    if (!(candidate.sd > 0)) {
       throw std::invalid_argument(
-          fmt::format("noise of '{}' = {}, must be > 0", nameOf(one.what), one.sd));
+          fmt::format("noise of '{}' = {}, must be > 0", nameOf(candidate.what), candidate.sd));
     }
-    series.push_back({one.what, Eigen::VectorXd::Map(times.data(), n)});
+    series.push_back({candidate.what, Eigen::VectorXd::Map(times.data(), n)});
   }
-  const Eigen::MatrixXd gamma = ObservedMotion(arm, std::move(series)).linearised(motion).gamma;
+  const Eigen::MatrixXd gamma = ObservedMotion(system, std::move(series)).linearised(motion).gamma;
   std::vector<Eigen::MatrixXd> information;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     const auto of = gamma.middleRows(static_cast<Eigen::Index>(c) * n, n);

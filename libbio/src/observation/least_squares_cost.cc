@@ -7,9 +7,9 @@
 
 namespace bio {
 
-MotionCost leastSquaresCost(const MusculoskeletalSystem& arm, std::vector<ObservedSeries> series,
+MotionCost leastSquaresCost(const MusculoskeletalSystem& system, std::vector<ObservedSeries> series,
                             Eigen::VectorXd measured, Eigen::VectorXd sd) {
-  const ObservedMotion observed(arm, std::move(series));
+  const ObservedMotion observed(system, std::move(series));
   observed.requireAdjoint();
   if (measured.size() != observed.size() || sd.size() != observed.size()) {
     throw std::invalid_argument(

@@ -7,12 +7,13 @@ namespace bio {
 namespace {
 
 /// Mass matrix's entry of a coordinate at mid-range, the others at their defaults.
-double inertiaOf(const MusculoskeletalSystem& arm, int freeIndex) {
-  return stepping::withCoordinates(arm.skeleton(), [&](auto N) {
-    Eigen::Matrix<double, decltype(N)::value, 1> at = arm.skeleton().defaultValues();
-    const Coordinate& one = arm.skeleton().coordinates()[static_cast<std::size_t>(freeIndex)];
-    at[freeIndex] = (one.rangeMin + one.rangeMax) / 2;
-    SystemConfiguration<decltype(N)::value> configuration(arm);
+double inertiaOf(const MusculoskeletalSystem& system, int freeIndex) {
+  return stepping::withCoordinates(system.skeleton(), [&](auto N) {
+    Eigen::Matrix<double, decltype(N)::value, 1> at = system.skeleton().defaultValues();
+    const Coordinate& coordinate =
+        system.skeleton().coordinates()[static_cast<std::size_t>(freeIndex)];
+    at[freeIndex] = (coordinate.rangeMin + coordinate.rangeMax) / 2;
+    SystemConfiguration<decltype(N)::value> configuration(system);
     configuration.moveSkeletonTo(at);
     return double(configuration.massMatrix()(freeIndex, freeIndex));
   });
@@ -20,16 +21,16 @@ double inertiaOf(const MusculoskeletalSystem& arm, int freeIndex) {
 
 }  // namespace
 
-Nudge nudgeTo(const MusculoskeletalSystem& arm, int freeIndex, const std::vector<double>& times,
+Nudge nudgeTo(const MusculoskeletalSystem& system, int freeIndex, const std::vector<double>& times,
               const Eigen::VectorXd& values, double frequency) {
   const SmoothedMotion course = smoothed(times, values);
-  const double inertia = inertiaOf(arm, freeIndex);
-  Nudge nudge{arm.skeleton().coordinates()[static_cast<std::size_t>(freeIndex)].name,
+  const double inertia = inertiaOf(system, freeIndex);
+  Nudge nudge{system.skeleton().coordinates()[static_cast<std::size_t>(freeIndex)].name,
               inertia * frequency * frequency,
               1.4 * inertia * frequency,
               {}};
   Eigen::MatrixXd pull =
-      Eigen::MatrixXd::Zero(course.values.size(), arm.skeleton().numCoordinates());
+      Eigen::MatrixXd::Zero(course.values.size(), system.skeleton().numCoordinates());
   pull.col(freeIndex) = nudge.stiffness * course.values + nudge.damping * course.speeds;
   nudge.pull = ExternalForce(course.times, pull);
   return nudge;

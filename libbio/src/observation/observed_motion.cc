@@ -25,7 +25,7 @@ int placeIn(const List& list, const std::string& name) {
 }
 
 /// Index of what an observable is of.
-int sourceOf(const MusculoskeletalSystem& arm, const Observable& what) {
+int sourceOf(const MusculoskeletalSystem& system, const Observable& what) {
   const auto refuse = [&](const char* rule) {
     throw std::invalid_argument(fmt::format("measured '{}': {}", nameOf(what), rule));
   };
@@ -33,26 +33,26 @@ int sourceOf(const MusculoskeletalSystem& arm, const Observable& what) {
   switch (what.kind) {
     case Kind::coordinate:
     case Kind::speed:
-      index = arm.skeleton().indexOf(what.of);
+      index = system.skeleton().indexOf(what.of);
       if (index < 0) refuse("its coordinate must be free");
       break;
     case Kind::moment:
-      index = arm.skeleton().indexOf(what.of);
-      if (index < 0 || !arm.isPrescribed(index)) {
+      index = system.skeleton().indexOf(what.of);
+      if (index < 0 || !system.isPrescribed(index)) {
         refuse(
             "its coordinate must be prescribed or locked: where it is free to move, nothing "
             "holds it, and the moment is 0");
       }
       break;
     case Kind::marker:
-      index = placeIn(arm.markers(), what.of);
+      index = placeIn(system.markers(), what.of);
       if (index < 0) refuse("the model has no such marker");
       break;
     case Kind::fibreLength:
     case Kind::pennation:
     case Kind::tendonForce:
     case Kind::activation:
-      index = placeIn(arm.muscles(), what.of);
+      index = placeIn(system.muscles(), what.of);
       if (index < 0) refuse("no free or prescribed coordinate moves this muscle");
       break;
   }
@@ -80,12 +80,13 @@ void pennationAt(const SimulatedMuscle& muscle, std::size_t place,
 
 }  // namespace
 
-ObservedMotion::ObservedMotion(const MusculoskeletalSystem& arm, std::vector<ObservedSeries> series)
-    : arm_(&arm), series_(std::move(series)) {
-  for (const ObservedSeries& one : series_) {
-    sources_.push_back(sourceOf(arm, one.what));
-    size_ += one.times.size();
-    const Kind kind = one.what.kind;
+ObservedMotion::ObservedMotion(const MusculoskeletalSystem& system,
+                               std::vector<ObservedSeries> series)
+    : system_(&system), series_(std::move(series)) {
+  for (const ObservedSeries& series : series_) {
+    sources_.push_back(sourceOf(system, series.what));
+    size_ += series.times.size();
+    const Kind kind = series.what.kind;
     needsReactions_ = needsReactions_ || kind == Kind::moment;
     needsMuscles_ = needsMuscles_ || kind == Kind::fibreLength || kind == Kind::pennation ||
                     kind == Kind::tendonForce || kind == Kind::activation;
@@ -106,10 +107,10 @@ ObservedMotion::Linearised ObservedMotion::evaluate(const Trajectory& motion,
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   Linearised all{Eigen::VectorXd::Constant(size_, nan),
                  Eigen::MatrixXd::Constant(size_, parameters, nan)};
-  const bool hasForces = std::any_of(series_.begin(), series_.end(), [](const ObservedSeries& one) {
-    return one.what.kind == Kind::tendonForce;
-  });
-  const MuscleReport muscles = hasForces ? reportMuscles(*arm_, motion) : MuscleReport{};
+  const bool hasForces = std::any_of(
+      series_.begin(), series_.end(),
+      [](const ObservedSeries& series) { return series.what.kind == Kind::tendonForce; });
+  const MuscleReport muscles = hasForces ? reportMuscles(*system_, motion) : MuscleReport{};
   Index at = 0;
   for (std::size_t i = 0; i < series_.size(); ++i) {
     const Observable& what = series_[i].what;
@@ -117,7 +118,7 @@ ObservedMotion::Linearised ObservedMotion::evaluate(const Trajectory& motion,
     const int index = sources_[i];
     const auto place = static_cast<std::size_t>(index);
     if (what.kind == Kind::marker) {
-      addMarker(series_[i], arm_->markers()[place], motion, s, at, all);
+      addMarker(series_[i], system_->markers()[place], motion, s, at, all);
       at += times.size();
       continue;
     }
@@ -149,8 +150,8 @@ ObservedMotion::Linearised ObservedMotion::evaluate(const Trajectory& motion,
           straight(1, motion.fibreLength.row(index), &SensitivityTrajectory::fibreLength);
           break;
         case Kind::pennation:
-          pennationAt(arm_->muscles()[place].muscle, place, info::linearAt(motion.time, times[k]),
-                      motion, s, at, all);
+          pennationAt(system_->muscles()[place].muscle, place,
+                      info::linearAt(motion.time, times[k]), motion, s, at, all);
           break;
         case Kind::tendonForce:
           straight(1, muscles.tendonForce.row(index), &SensitivityTrajectory::tendonForce);
@@ -173,10 +174,10 @@ void ObservedMotion::addMarker(const ObservedSeries& series, const SystemMarker&
   const auto along = [&](const Placement<double>& X) {
     return X.R.row(series.what.axis).dot(marker.p_S) + X.p[series.what.axis];
   };
-  stepping::withCoordinates(arm_->skeleton(), [&](auto N) {
+  stepping::withCoordinates(system_->skeleton(), [&](auto N) {
     constexpr int count = decltype(N)::value;
-    SystemConfiguration<count> configuration(*arm_);
-    Eigen::Matrix<double, count, 1> q = arm_->skeleton().defaultValues();
+    SystemConfiguration<count> configuration(*system_);
+    Eigen::Matrix<double, count, 1> q = system_->skeleton().defaultValues();
     for (Index k = 0; k < series.times.size(); ++k) {
       const auto w = weightsAt(motion.time, series.times[k]);
       if (!w) continue;
@@ -203,12 +204,12 @@ void ObservedMotion::addMarker(const ObservedSeries& series, const SystemMarker&
 }
 
 void ObservedMotion::requireAdjoint() const {
-  for (const ObservedSeries& one : series_) {
-    const Kind kind = one.what.kind;
+  for (const ObservedSeries& series : series_) {
+    const Kind kind = series.what.kind;
     if (kind != Kind::coordinate && kind != Kind::speed && kind != Kind::marker) {
       throw std::invalid_argument(fmt::format(
           "gradient of a cost: '{}' has no adjoint, only coordinates, speeds and markers have",
-          nameOf(one.what)));
+          nameOf(series.what)));
     }
   }
 }
@@ -227,7 +228,7 @@ void ObservedMotion::pullBack(const Trajectory& motion, const Eigen::VectorXd& l
     const auto& [what, times] = series_[i];
     const int index = sources_[i];
     if (what.kind == Kind::marker) {
-      pullMarkerBack(series_[i], arm_->markers()[static_cast<std::size_t>(index)], motion,
+      pullMarkerBack(series_[i], system_->markers()[static_cast<std::size_t>(index)], motion,
                      lambda.segment(at, times.size()), q, qDot);
     }
     for (Index k = 0; k < times.size() && what.kind != Kind::marker; ++k) {
@@ -247,10 +248,10 @@ void ObservedMotion::pullMarkerBack(const ObservedSeries& series, const SystemMa
   const auto along = [&](const Placement<double>& X) {
     return X.R.row(series.what.axis).dot(marker.p_S) + X.p[series.what.axis];
   };
-  stepping::withCoordinates(arm_->skeleton(), [&](auto N) {
+  stepping::withCoordinates(system_->skeleton(), [&](auto N) {
     constexpr int count = decltype(N)::value;
-    SystemConfiguration<count> configuration(*arm_);
-    Eigen::Matrix<double, count, 1> posture = arm_->skeleton().defaultValues();
+    SystemConfiguration<count> configuration(*system_);
+    Eigen::Matrix<double, count, 1> posture = system_->skeleton().defaultValues();
     for (Index k = 0; k < series.times.size(); ++k) {
       const auto w = weightsAt(motion.time, series.times[k]);
       if (!w) continue;

@@ -18,26 +18,26 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-TrialPredictor::TrialPredictor(const ParameterCatalogue& catalogue, const SystemOptions& arm,
+TrialPredictor::TrialPredictor(const ParameterCatalogue& catalogue, const SystemOptions& system,
                                ExcitationSignal trial, const std::string& coordinate,
                                std::vector<double> times, std::vector<std::size_t> selection,
                                const SimulationOptions& options)
     : TrialPredictor(
-          catalogue, arm, std::move(trial),
+          catalogue, system, std::move(trial),
           {{{Observable::Kind::coordinate, coordinate, 0},
             Eigen::Map<const Eigen::VectorXd>(times.data(), static_cast<Index>(times.size()))}},
           std::move(selection), options) {
-  const auto& free = arm.skeleton.freeCoordinates;
+  const auto& free = system.skeleton.freeCoordinates;
   if (std::find(free.begin(), free.end(), coordinate) == free.end()) {
     throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", coordinate));
   }
 }
 
-TrialPredictor::TrialPredictor(const ParameterCatalogue& catalogue, const SystemOptions& arm,
+TrialPredictor::TrialPredictor(const ParameterCatalogue& catalogue, const SystemOptions& system,
                                ExcitationSignal trial, std::vector<ObservedSeries> series,
                                std::vector<std::size_t> selection, const SimulationOptions& options)
     : catalogue_(&catalogue),
-      armOptions_(arm),
+      systemOptions_(system),
       trial_(std::move(trial)),
       series_(std::move(series)),
       selection_(std::move(selection)),
@@ -46,10 +46,10 @@ TrialPredictor::TrialPredictor(const ParameterCatalogue& catalogue, const System
       options.integrator != Integrator::variationalLeft) {
     throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
-  for (const ObservedSeries& one : series_) {
-    size_ += one.times.size();
+  for (const ObservedSeries& series : series_) {
+    size_ += series.times.size();
     double last = -std::numeric_limits<double>::infinity();
-    for (const double t : one.times) {
+    for (const double t : series.times) {
       const bool inside = t >= options.startTime - 1e-9 &&
                           t <= options.startTime + options.duration + 1e-9 && t > last;
       if (!inside) {
@@ -65,13 +65,13 @@ TrialPredictor::TrialPredictor(const ParameterCatalogue& catalogue, const System
 TrialPredictor::Held TrialPredictor::heldAt(ParameterCatalogue::Setting setting) const {
   SimulationOptions options = options_;
   for (const Nudge& nudge : nudges_) apply(nudge, setting.model, options.externalForce);
-  MusculoskeletalSystem arm(setting.model, armOptions_);
-  return {std::move(setting), std::move(options), std::move(arm)};
+  MusculoskeletalSystem system(setting.model, systemOptions_);
+  return {std::move(setting), std::move(options), std::move(system)};
 }
 
 Trajectory TrialPredictor::simulate(const Eigen::VectorXd& theta) const {
   const Held held = heldAt(catalogue_->at(selection_, theta));
-  return simulateSetting(held.arm, held.setting, trial_, held.options);
+  return simulateSetting(held.system, held.setting, trial_, held.options);
 }
 
 SensitivityTrajectory TrialPredictor::simulateWithSensitivities(
@@ -85,7 +85,7 @@ SensitivityTrajectory TrialPredictor::sensitivitiesOf(const Held& held, bool mus
   options.simulation = held.options;
   options.muscles = muscles;
   options.reactions = reactions;
-  return bio::simulateWithSensitivities(held.arm, *catalogue_, held.setting, selection_, trial_,
+  return bio::simulateWithSensitivities(held.system, *catalogue_, held.setting, selection_, trial_,
                                         options);
 }
 
@@ -93,8 +93,8 @@ Eigen::VectorXd TrialPredictor::outputs(const Eigen::VectorXd& theta) const {
   const ParameterCatalogue::Setting setting = catalogue_->at(selection_, theta);
   try {
     const Held held = heldAt(setting);
-    return ObservedMotion(held.arm, series_)
-        .values(simulateSetting(held.arm, held.setting, trial_, held.options));
+    return ObservedMotion(held.system, series_)
+        .values(simulateSetting(held.system, held.setting, trial_, held.options));
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception&) {
@@ -114,7 +114,7 @@ TrialPredictor::Linearised TrialPredictor::withSensitivities(const Eigen::Vector
   const ParameterCatalogue::Setting setting = catalogue_->at(selection_, theta);
   try {
     const Held held = heldAt(setting);
-    const ObservedMotion observed(held.arm, series_);
+    const ObservedMotion observed(held.system, series_);
     ObservedMotion::Linearised at = observed.linearised(
         sensitivitiesOf(held, observed.needsMuscles(), observed.needsReactions()));
     return {std::move(at.values), std::move(at.gamma)};
@@ -130,8 +130,8 @@ CostGradient TrialPredictor::leastSquares(const Eigen::VectorXd& theta,
                                           const Eigen::VectorXd& measured,
                                           const Eigen::VectorXd& sd) const {
   const Held held = heldAt(catalogue_->at(selection_, theta));
-  return simulateWithGradient(held.arm, *catalogue_, held.setting, selection_, trial_, held.options,
-                              leastSquaresCost(held.arm, series_, measured, sd));
+  return simulateWithGradient(held.system, *catalogue_, held.setting, selection_, trial_,
+                              held.options, leastSquaresCost(held.system, series_, measured, sd));
 }
 
 info::Predictor TrialPredictor::predictor() const {

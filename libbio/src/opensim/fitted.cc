@@ -75,12 +75,12 @@ void appendFitted(const Writing& writing, Element& model) {
   Element& own = append(model, "FisherHill");
   if (fitted.step) appendNumber(own, "step_s", *fitted.step);
   for (const TrialStart& start : fitted.starts) {
-    Element& one = append(own, "trial_start");
-    appendText(one, "file", start.file);
-    appendText(one, "sha256", start.sha256);
-    appendText(one, "coordinate", start.coordinate);
-    appendNumber(one, "value", start.value);
-    appendNumber(one, "speed", start.speed);
+    Element& element = append(own, "trial_start");
+    appendText(element, "file", start.file);
+    appendText(element, "sha256", start.sha256);
+    appendText(element, "coordinate", start.coordinate);
+    appendNumber(element, "value", start.value);
+    appendNumber(element, "speed", start.speed);
   }
 }
 

@@ -42,7 +42,8 @@ double* springForceValue(SpringGeneralizedForce& force, int component) {
   return values[component];
 }
 
-void addForceParameters(const Model& model, const MusculoskeletalSystem& arm, ParameterList& list) {
+void addForceParameters(const Model& model, const MusculoskeletalSystem& system,
+                        ParameterList& list) {
   struct Rule {
     const char* name;
     const char* unit;
@@ -65,7 +66,7 @@ void addForceParameters(const Model& model, const MusculoskeletalSystem& arm, Pa
   };
   for (std::size_t i = 0; i < model.limitForces.size(); ++i) {
     CoordinateLimitForce force = model.limitForces[i];
-    if (!force.enabled || arm.skeleton().indexOf(force.coordinate) < 0) continue;
+    if (!force.enabled || system.skeleton().indexOf(force.coordinate) < 0) continue;
     for (int k = 0; k < 6; ++k) {
       addForce(force.name, limitRules[k], *limitForceValue(force, k), LimitForceTarget{i, k});
       if (k == 5) list.last().lower = 0.05 * force.transition;
@@ -73,23 +74,23 @@ void addForceParameters(const Model& model, const MusculoskeletalSystem& arm, Pa
   }
   for (std::size_t i = 0; i < model.springForces.size(); ++i) {
     SpringGeneralizedForce force = model.springForces[i];
-    if (!force.enabled || arm.skeleton().indexOf(force.coordinate) < 0) continue;
+    if (!force.enabled || system.skeleton().indexOf(force.coordinate) < 0) continue;
     for (int k = 0; k < 3; ++k) {
       addForce(force.name, springRules[k], *springForceValue(force, k), SpringForceTarget{i, k});
     }
   }
   using OfForce = ForceNumberTarget::Of;
   for (std::size_t i = 0; i < model.pointSprings.size(); ++i) {
-    if (arm.bodyForces().hasSpring(i)) {
+    if (system.bodyForces().hasSpring(i)) {
       addForceNumbers(model, OfForce::pointSpring, i, model.pointSprings[i].name, list);
     }
   }
   for (std::size_t i = 0; i < model.bushings.size(); ++i) {
-    if (arm.bodyForces().hasBushing(i))
+    if (system.bodyForces().hasBushing(i))
       addForceNumbers(model, OfForce::bushing, i, model.bushings[i].name, list);
   }
-  addActing(model, OfForce::elasticPath, model.elasticPaths, arm.elasticPaths(), list);
-  addActing(model, OfForce::actuator, model.actuators, arm.actuators(), list);
+  addActing(model, OfForce::elasticPath, model.elasticPaths, system.elasticPaths(), list);
+  addActing(model, OfForce::actuator, model.actuators, system.actuators(), list);
 }
 
 }  // namespace bio

@@ -32,18 +32,18 @@ const char* axisName(int axis) {
 
 class Collector {
  public:
-  Collector(const Model& model, const MusculoskeletalSystem& arm, const StartPoint& start,
+  Collector(const Model& model, const MusculoskeletalSystem& system, const StartPoint& start,
             const EmgMapping& mapping)
-      : model_(model), arm_(arm), start_(start), mapping_(mapping) {}
+      : model_(model), system_(system), start_(start), mapping_(mapping) {}
 
   std::vector<ModelParameter> collect() {
-    for (std::size_t i = 0; i < arm_.numMuscles(); ++i) addMuscle(arm_.muscles()[i]);
-    for (std::size_t i = 0; i < arm_.numMuscles(); ++i) addPoints(arm_.muscles()[i]);
+    for (std::size_t i = 0; i < system_.numMuscles(); ++i) addMuscle(system_.muscles()[i]);
+    for (std::size_t i = 0; i < system_.numMuscles(); ++i) addPoints(system_.muscles()[i]);
     addWraps();
     addBodies();
-    addForceParameters(model_, arm_, list_);
-    addEmgParameters(arm_, mapping_, list_);
-    addStartParameters(arm_, start_, list_);
+    addForceParameters(model_, system_, list_);
+    addEmgParameters(system_, mapping_, list_);
+    addStartParameters(system_, start_, list_);
     addGroups();
     addLatentParameters(mapping_, list_);  // last: their number differs between trials
     return list_.take();
@@ -95,7 +95,7 @@ class Collector {
 
   void addPoints(const SystemMuscle& muscle) {
     const std::size_t index = indexOf(muscle.name);
-    const PathGradients gradients(model_, arm_.skeleton(), model_.muscles[index], muscle.path);
+    const PathGradients gradients(model_, system_.skeleton(), model_.muscles[index], muscle.path);
     const auto& points = model_.muscles[index].path.points;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!gradients.isUsed(i)) continue;
@@ -121,7 +121,7 @@ class Collector {
 
   // A radius ends where a point of a path over the wrap object comes inside.
   void limitRadius(ModelParameter& radius, const std::string& wrapObject, int number = 0) {
-    for (const SystemMuscle& muscle : arm_.muscles()) {
+    for (const SystemMuscle& muscle : system_.muscles()) {
       const Muscle& given = model_.muscles[indexOf(muscle.name)];
       const Path& path = given.path;
       for (std::size_t i = 0; i < path.wraps.size(); ++i) {
@@ -131,7 +131,7 @@ class Collector {
         if (!(limit.radius < radius.limit)) continue;
         radius.limit = limit.radius;
         radius.whyLimited =
-            fmt::format("{}'s {}", muscle.name, describe(limit, path, arm_.skeleton()));
+            fmt::format("{}'s {}", muscle.name, describe(limit, path, system_.skeleton()));
       }
     }
     constexpr double margin = 0.005;
@@ -195,7 +195,7 @@ class Collector {
   void addBodies() {
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const Body& body = model_.bodies[i];
-      if (arm_.skeleton().placeOf(body.name).segment == 0) continue;
+      if (system_.skeleton().placeOf(body.name).segment == 0) continue;
       const double large = body.mass > 0 ? 5 * body.mass : 1;
       list_.add(body.name + ".mass", "kg", "mass", body.mass,
                 {0, large, std::max(0.15 * body.mass, 1e-3)}, {BodyTarget{i, 0}});
@@ -264,11 +264,11 @@ class Collector {
   };
 
   const Model& model_;
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const StartPoint& start_;
   const EmgMapping& mapping_;
   std::vector<TouchedWrap> touched_;
-  PostureSamples postures_{model_, arm_.skeleton()};
+  PostureSamples postures_{model_, system_.skeleton()};
   ParameterList list_;
 };
 
@@ -281,9 +281,10 @@ SchutteNumber schutteNumber(MuscleQuantity quantity) {
   return nullptr;
 }
 
-std::vector<ModelParameter> collectParameters(const Model& model, const MusculoskeletalSystem& arm,
+std::vector<ModelParameter> collectParameters(const Model& model,
+                                              const MusculoskeletalSystem& system,
                                               const StartPoint& start, const EmgMapping& mapping) {
-  return Collector(model, arm, start, mapping).collect();
+  return Collector(model, system, start, mapping).collect();
 }
 
 }  // namespace bio

@@ -6,8 +6,9 @@
 
 namespace bio {
 
-/// Every parameter that moves the arm, with its default bounds and deviation.
-std::vector<ModelParameter> collectParameters(const Model& model, const MusculoskeletalSystem& arm,
+/// Every parameter that moves the system, with its default bounds and deviation.
+std::vector<ModelParameter> collectParameters(const Model& model,
+                                              const MusculoskeletalSystem& system,
                                               const StartPoint& start, const EmgMapping& mapping);
 
 /// The member of SchutteParameters that a quantity is; null for a scale of a curve.

@@ -36,16 +36,17 @@ class ParameterList {
 
 /// Numbers of coordinate forces, forces on bodies, elastic paths and actuators that act in the
 /// system.
-void addForceParameters(const Model& model, const MusculoskeletalSystem& arm, ParameterList& list);
+void addForceParameters(const Model& model, const MusculoskeletalSystem& system,
+                        ParameterList& list);
 
 /// Gains, delay and shape of the relation between EMG and excitation.
-void addEmgParameters(const MusculoskeletalSystem& arm, const EmgMapping& mapping,
+void addEmgParameters(const MusculoskeletalSystem& system, const EmgMapping& mapping,
                       ParameterList& list);
 /// Corrections of excitations without an electrode, one for each knot; as many as the trial has.
 void addLatentParameters(const EmgMapping& mapping, ParameterList& list);
 
 /// Where a simulation starts, and how fast.
-void addStartParameters(const MusculoskeletalSystem& arm, const StartPoint& start,
+void addStartParameters(const MusculoskeletalSystem& system, const StartPoint& start,
                         ParameterList& list);
 
 }  // namespace bio

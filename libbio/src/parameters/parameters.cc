@@ -163,18 +163,18 @@ bool matches(std::string_view pattern, std::string_view text) {
 
 }  // namespace
 
-ParameterCatalogue::ParameterCatalogue(const Model& model, const MusculoskeletalSystem& arm,
+ParameterCatalogue::ParameterCatalogue(const Model& model, const MusculoskeletalSystem& system,
                                        const StartPoint& start, const EmgMapping& mapping)
     : model_(model), mapping_(mapping), start_(start) {
-  const Eigen::Index n = arm.skeleton().numCoordinates();
+  const Eigen::Index n = system.skeleton().numCoordinates();
   if (start_.q.size() != n || (start_.qDot.size() != 0 && start_.qDot.size() != n)) {
     throw std::invalid_argument(
         fmt::format("start: {} coordinates and {} speeds, must be {} (or no speeds)",
                     start_.q.size(), start_.qDot.size(), n));
   }
   if (start_.qDot.size() == 0) start_.qDot = Eigen::VectorXd::Zero(n);
-  for (const SystemMuscle& muscle : arm.muscles()) muscles_.push_back(muscle.name);
-  parameters_ = collectParameters(model_, arm, start_, mapping_);
+  for (const SystemMuscle& muscle : system.muscles()) muscles_.push_back(muscle.name);
+  parameters_ = collectParameters(model_, system, start_, mapping_);
 }
 
 bool ParameterCatalogue::has(const std::string& name) const {

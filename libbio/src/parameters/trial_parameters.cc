@@ -7,9 +7,9 @@
 
 namespace bio {
 
-void addEmgParameters(const MusculoskeletalSystem& arm, const EmgMapping& mapping,
+void addEmgParameters(const MusculoskeletalSystem& system, const EmgMapping& mapping,
                       ParameterList& list) {
-  for (const SystemMuscle& muscle : arm.muscles()) {
+  for (const SystemMuscle& muscle : system.muscles()) {
     const auto at = mapping.gain.find(muscle.name);
     const double gain = at == mapping.gain.end() ? 1.0 : at->second;
     list.add(fmt::format("emg.{}.gain", muscle.name), "", "factor on the trial's excitation", gain,
@@ -33,12 +33,12 @@ void addLatentParameters(const EmgMapping& mapping, ParameterList& list) {
   }
 }
 
-void addStartParameters(const MusculoskeletalSystem& arm, const StartPoint& start,
+void addStartParameters(const MusculoskeletalSystem& system, const StartPoint& start,
                         ParameterList& list) {
-  const auto& coordinates = arm.skeleton().coordinates();
+  const auto& coordinates = system.skeleton().coordinates();
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    if (arm.isPrescribed(static_cast<int>(i))) continue;
+    if (system.isPrescribed(static_cast<int>(i))) continue;
     const bool turns = coordinates[i].isRotation;
     const double value = start.q[k];
     const double wide = turns ? std::numbers::pi : 1;
@@ -50,7 +50,7 @@ void addStartParameters(const MusculoskeletalSystem& arm, const StartPoint& star
   }
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    if (arm.isPrescribed(static_cast<int>(i))) continue;
+    if (system.isPrescribed(static_cast<int>(i))) continue;
     const bool turns = coordinates[i].isRotation;
     const double least = turns ? 0.1 : 0.02;
     list.add("initial." + coordinates[i].name + ".speed", turns ? "rad/s" : "m/s",

@@ -58,8 +58,8 @@ PathTable::PathTable(double lowest, double highest, std::size_t pieces,
 }
 
 std::size_t PathTable::standing() const {
-  return static_cast<std::size_t>(
-      std::count_if(pieces_.begin(), pieces_.end(), [](const Piece& one) { return one.stands; }));
+  return static_cast<std::size_t>(std::count_if(pieces_.begin(), pieces_.end(),
+                                                [](const Piece& piece) { return piece.stands; }));
 }
 
 }  // namespace bio

@@ -16,18 +16,18 @@ class AdjointPass {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
 
-  AdjointPass(const MusculoskeletalSystem& arm, const ParameterEffects& effects,
+  AdjointPass(const MusculoskeletalSystem& system, const ParameterEffects& effects,
               const ParameterCatalogue::Setting& setting, const ExcitationSignal& driven,
               Index numParameters, const SimulationOptions& options)
-      : arm_(arm),
+      : system_(system),
         options_(options),
-        configuration_(arm),
-        direct_(arm, effects, setting.model, configuration_, 1),
-        sums_(arm, direct_, configuration_, numParameters),
-        excitation_(arm, driven),
-        step_(arm, options, configuration_, sums_, excitation_),
-        state_(arm),
-        trial_(arm) {}
+        configuration_(system),
+        direct_(system, effects, setting.model, configuration_, 1),
+        sums_(system, direct_, configuration_, numParameters),
+        excitation_(system, driven),
+        step_(system, options, configuration_, sums_, excitation_),
+        state_(system),
+        trial_(system) {}
 
   /// @param slopes  of the cost at the rows of result.motion, which is filled in
   void run(const SystemState& start, const StepTape& tape, const ExcitationSignal& trial,
@@ -42,7 +42,7 @@ class AdjointPass {
     addRow(0, result.motion, slopes);
     finish(start, result.motion.time.front(), result);
     const ParameterEffects& effects = direct_.effects();
-    addActivations(excitationRows(arm_, effects, trial, mapping), result.gradient);
+    addActivations(excitationRows(system_, effects, trial, mapping), result.gradient);
     for (const auto& effect : effects.start) {
       result.gradient[effect.column] +=
           effect.weight *
@@ -57,17 +57,17 @@ class AdjointPass {
     if (row >= motion.q.cols()) return;
     state_.q += slopes.q.col(row);
     Vector inSpeed = slopes.qDot.col(row);
-    for (const int k : arm_.prescribed()) inSpeed[k] = 0;
+    for (const int k : system_.prescribed()) inSpeed[k] = 0;
     if (inSpeed.isZero(0)) return;
     const Vector qDot = motion.qDot.col(row);
     configuration_.moveSkeletonTo(motion.q.col(row));
     const EnergyDerivatives<N>& energy = configuration_.energy(qDot);
     Matrix M = energy.T_vv;
-    decouple(arm_.prescribed(), M);
+    decouple(system_.prescribed(), M);
     Vector s = M.ldlt().solve(inSpeed);
-    for (const int k : arm_.prescribed()) s[k] = 0;
+    for (const int k : system_.prescribed()) s[k] = 0;
     state_.p += s;
-    if (!arm_.skeleton().hasConstantInertia()) state_.q -= energy.T_vq.transpose() * s;
+    if (!system_.skeleton().hasConstantInertia()) state_.q -= energy.T_vq.transpose() * s;
     sums_.addInertia(qDot, -s, Vector::Zero(s.size()));
   }
 
@@ -106,7 +106,7 @@ class AdjointPass {
   void finish(const SystemState& start, double time, CostGradient& result) {
     const Vector q = start.q;
     Vector qDot = start.qDot;
-    if (!arm_.prescribed().empty()) {
+    if (!system_.prescribed().empty()) {
       Vector placed = q;
       options_.prescribed.place(time, placed, qDot);
     }
@@ -115,9 +115,9 @@ class AdjointPass {
     result.startSpeed = energy.T_vv.transpose() * state_.p;
     state_.q += energy.T_vq.transpose() * state_.p;
     sums_.addInertia(qDot, state_.p, Vector::Zero(q.size()));
-    for (std::size_t m = 0; m < arm_.numMuscles(); ++m) {
+    for (std::size_t m = 0; m < system_.numMuscles(); ++m) {
       const auto sm = static_cast<Index>(m);
-      const SimulatedMuscle& muscle = arm_.muscles()[m].muscle;
+      const SimulatedMuscle& muscle = system_.muscles()[m].muscle;
       if (!muscle.hasFibreState()) continue;
       const LengthJet<N>& path = configuration_.length(m);
       const SimulatedMuscle::RestSlopes d = muscle.restSlopes(
@@ -134,7 +134,7 @@ class AdjointPass {
       sums_.addGeometry(m, q, w);
     }
     result.startCoordinate = state_.q;
-    for (const int k : arm_.prescribed()) result.startCoordinate[k] = result.startSpeed[k] = 0;
+    for (const int k : system_.prescribed()) result.startCoordinate[k] = result.startSpeed[k] = 0;
     excitation_.finish(time, state_.activation);
     result.gradient = sums_.inColumns();
   }
@@ -143,14 +143,14 @@ class AdjointPass {
   void addActivations(const std::vector<std::vector<RowsOfColumn>>& emg,
                       Eigen::VectorXd& gradient) const {
     const ParameterEffects& effects = direct_.effects();
-    for (std::size_t m = 0; m < arm_.numMuscles(); ++m) {
+    for (std::size_t m = 0; m < system_.numMuscles(); ++m) {
       const auto sm = static_cast<Index>(m);
       for (const QuantityEffect& effect : effects.muscles[m].activation) {
         gradient[effect.column] +=
             effect.factor * excitation_.numbers()(static_cast<Index>(effect.quantity), sm);
       }
-      for (const RowsOfColumn& one : emg[m]) {
-        gradient[one.column] += one.rows.dot(excitation_.excitation().row(sm));
+      for (const RowsOfColumn& column : emg[m]) {
+        gradient[column.column] += column.rows.dot(excitation_.excitation().row(sm));
       }
     }
     for (const QuantityEffect& effect : effects.delay) {
@@ -158,7 +158,7 @@ class AdjointPass {
     }
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const SimulationOptions& options_;
   SystemConfiguration<N> configuration_;
   DirectEffects<N> direct_;

@@ -14,10 +14,10 @@ struct AdjointState {
   Eigen::Matrix<double, N, 1> q, p;
   Eigen::VectorXd fibre, activation;
 
-  explicit AdjointState(const MusculoskeletalSystem& arm) {
-    q.setZero(countOf<N>(arm));
-    p.setZero(countOf<N>(arm));
-    fibre.setZero(static_cast<Eigen::Index>(arm.numMuscles()));
+  explicit AdjointState(const MusculoskeletalSystem& system) {
+    q.setZero(countOf<N>(system));
+    p.setZero(countOf<N>(system));
+    fibre.setZero(static_cast<Eigen::Index>(system.numMuscles()));
     activation = fibre;
   }
   void setZero() {
@@ -36,16 +36,16 @@ class AdjointStep {
   using Vector = Eigen::Matrix<double, N, 1>;
   using State = AdjointState<N>;
 
-  AdjointStep(const MusculoskeletalSystem& arm, const SimulationOptions& options,
+  AdjointStep(const MusculoskeletalSystem& system, const SimulationOptions& options,
               SystemConfiguration<N>& configuration, GradientSums<N>& sums,
               ExcitationAdjoint& excitation)
-      : arm_(arm),
+      : system_(system),
         options_(options),
         configuration_(configuration),
         sums_(sums),
         excitation_(excitation),
-        step_(arm, options, configuration),
-        middleActivation_(Eigen::VectorXd::Zero(static_cast<Index>(arm.numMuscles()))) {}
+        step_(system, options, configuration),
+        middleActivation_(Eigen::VectorXd::Zero(static_cast<Index>(system.numMuscles()))) {}
 
   /// To part i of the tape, for calls of pullBack.
   void moveTo(const StepTape& tape, std::size_t i) {
@@ -62,7 +62,7 @@ class AdjointStep {
     // through q′, p′ and ℓ′ to the residual R and to the force
     toEnd_ = state.q;
     toEnd_.noalias() += step_.momentumAtEnd().transpose() * state.p;
-    for (std::size_t m = 0; m < arm_.numMuscles(); ++m) {
+    for (std::size_t m = 0; m < system_.numMuscles(); ++m) {
       addAlong<N>(toEnd_, step_.muscle(m).half * state.fibre[static_cast<Index>(m)],
                   configuration_.length(m));
     }
@@ -79,7 +79,7 @@ class AdjointStep {
                            toForce_);
     }
     state.p = mu_;
-    for (std::size_t m = 0; m < arm_.numMuscles(); ++m) {
+    for (std::size_t m = 0; m < system_.numMuscles(); ++m) {
       if (step_.muscle(m).hasFibre) {
         inLength += addElastic(m, gathers, state);
       } else {
@@ -97,7 +97,7 @@ class AdjointStep {
     if (!options_.externalForce.empty()) inMiddle += step_.externalSlope().dot(toForce_);
     if (step_.others().any()) inMiddle += step_.others().load_t().dot(toForce_);
     InTimes times{first.begin + inMiddle / 2 - inLength, second.end + inMiddle / 2 + inLength};
-    if (!arm_.prescribed().empty()) {
+    if (!system_.prescribed().empty()) {
       times.end += toEnd_.dot(Vector(step_.givenColumns() * step_.givenSpeeds()));
     }
     return times;
@@ -118,7 +118,7 @@ class AdjointStep {
     middleActivation_[sm] = r.dV_dActivation * toRate;
     addAlong<N>(state.q, here.half * toTrial, path);
     if (!gathers) return here.stretch / (step_.h() * step_.h()) * toRate;
-    const SimulatedMuscle& muscle = arm_.muscles()[m].muscle;
+    const SimulatedMuscle& muscle = system_.muscles()[m].muscle;
     if (sums_.hasNumbers(m)) {
       const SimulatedMuscle::InNumbers d =
           muscle.inNumbers(here.activation, here.l_m, path.length, here.l_v, step_.pieces(m));
@@ -147,7 +147,7 @@ class AdjointStep {
     if (sums_.hasNumbers(m)) {
       sums_.addNumbers(
           m, -along,
-          arm_.muscles()[m].muscle.rigidInNumbers(here.activation, path.length, here.speed));
+          system_.muscles()[m].muscle.rigidInNumbers(here.activation, path.length, here.speed));
     }
     if (sums_.hasGeometry(m)) {
       auto& w = weights(path);
@@ -174,7 +174,7 @@ class AdjointStep {
     return weights_;
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const SimulationOptions& options_;
   SystemConfiguration<N>& configuration_;
   GradientSums<N>& sums_;

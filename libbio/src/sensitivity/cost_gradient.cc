@@ -36,35 +36,35 @@ CostGradient unknownGradient(CostGradient result, Eigen::Index parameters,
 
 }  // namespace
 
-CostGradient simulateWithGradient(const MusculoskeletalSystem& arm,
+CostGradient simulateWithGradient(const MusculoskeletalSystem& system,
                                   const ParameterCatalogue& catalogue,
                                   const ParameterCatalogue::Setting& setting,
                                   const std::vector<std::size_t>& wanted,
                                   const ExcitationSignal& trial, const SimulationOptions& options,
                                   const MotionCost& cost) {
-  return simulateWithGradient(arm, setting, stepping::directionsOf(catalogue, setting, wanted),
+  return simulateWithGradient(system, setting, stepping::directionsOf(catalogue, setting, wanted),
                               trial, options, cost);
 }
 
-CostGradient simulateWithGradient(const MusculoskeletalSystem& arm,
+CostGradient simulateWithGradient(const MusculoskeletalSystem& system,
                                   const ParameterCatalogue::Setting& setting,
                                   const std::vector<ParameterDirection>& wanted,
                                   const ExcitationSignal& trial, const SimulationOptions& given,
                                   const MotionCost& cost) {
   SimulationOptions own;
-  const SimulationOptions& options = stepping::withOwnForces(arm, given, own);
+  const SimulationOptions& options = stepping::withOwnForces(system, given, own);
   if (options.integrator != Integrator::variational &&
       options.integrator != Integrator::variationalLeft) {
     throw std::invalid_argument("gradient of a cost: integrator must be vi or vi-left");
   }
-  const ExcitationSignal driven = drivenExcitation(trial, muscleNames(arm), setting.mapping);
-  const SystemState start = startOf(arm, setting, driven, options.startTime);
-  stepping::checkSimulation(arm, driven, start, options);
+  const ExcitationSignal driven = drivenExcitation(trial, muscleNames(system), setting.mapping);
+  const SystemState start = startOf(system, setting, driven, options.startTime);
+  stepping::checkSimulation(system, driven, start, options);
   stepping::StepTape tape;
   CostGradient result;
-  result.motion = stepping::simulateVariational(arm, driven, start, options, &tape);
-  stepping::completeStates(arm, driven, result.motion);
-  stepping::addReactions(arm, driven, options, result.motion);
+  result.motion = stepping::simulateVariational(system, driven, start, options, &tape);
+  stepping::completeStates(system, driven, result.motion);
+  stepping::addReactions(system, driven, options, result.motion);
   const stepping::StopWatch watch;
   const CostOfMotion slopes = cost(result.motion);
   result.cost = slopes.value;
@@ -73,9 +73,9 @@ CostGradient simulateWithGradient(const MusculoskeletalSystem& arm,
     return unknownGradient(std::move(result), parameters, driven);
   }
   checkSlopes(slopes, result.motion);
-  const stepping::ParameterEffects effects(arm, setting, wanted);
-  stepping::withCoordinates(arm.skeleton(), [&](auto N) {
-    stepping::AdjointPass<decltype(N)::value> pass(arm, effects, setting, driven, parameters,
+  const stepping::ParameterEffects effects(system, setting, wanted);
+  stepping::withCoordinates(system.skeleton(), [&](auto N) {
+    stepping::AdjointPass<decltype(N)::value> pass(system, effects, setting, driven, parameters,
                                                    options);
     pass.run(start, tape, trial, setting.mapping, slopes, result);
   });

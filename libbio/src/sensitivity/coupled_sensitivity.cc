@@ -10,7 +10,7 @@
 namespace bio {
 namespace {
 
-void checkNodes(const ExternalNodes& nodes, const MusculoskeletalSystem& arm) {
+void checkNodes(const ExternalNodes& nodes, const MusculoskeletalSystem& system) {
   if (nodes.times.empty()) return;
   bool rises = nodes.times.size() >= 2;
   for (std::size_t k = 0; k + 1 < nodes.times.size(); ++k) {
@@ -19,7 +19,7 @@ void checkNodes(const ExternalNodes& nodes, const MusculoskeletalSystem& arm) {
   if (!rises) {
     throw std::invalid_argument("nodes of the external force: must be at least 2 and rise in time");
   }
-  const int n = arm.skeleton().numCoordinates();
+  const int n = system.skeleton().numCoordinates();
   for (const int k : nodes.coordinates) {
     if (k >= 0 && k < n && std::count(nodes.coordinates.begin(), nodes.coordinates.end(), k) == 1)
       continue;
@@ -32,72 +32,72 @@ void checkNodes(const ExternalNodes& nodes, const MusculoskeletalSystem& arm) {
 
 }  // namespace
 
-std::vector<std::string> muscleNames(const MusculoskeletalSystem& arm) {
+std::vector<std::string> muscleNames(const MusculoskeletalSystem& system) {
   std::vector<std::string> names;
-  for (const SystemMuscle& muscle : arm.muscles()) names.push_back(muscle.name);
+  for (const SystemMuscle& muscle : system.muscles()) names.push_back(muscle.name);
   return names;
 }
 
-SystemState startOf(const MusculoskeletalSystem& arm, const ParameterCatalogue::Setting& setting,
+SystemState startOf(const MusculoskeletalSystem& system, const ParameterCatalogue::Setting& setting,
                     const ExcitationSignal& driven, double time) {
-  SystemState start = initialState(arm, setting.start.q, driven, time);
+  SystemState start = initialState(system, setting.start.q, driven, time);
   start.qDot = setting.start.qDot;
   return start;
 }
 
-Trajectory simulateSetting(const MusculoskeletalSystem& arm,
+Trajectory simulateSetting(const MusculoskeletalSystem& system,
                            const ParameterCatalogue::Setting& setting,
                            const ExcitationSignal& trial, const SimulationOptions& options) {
-  const ExcitationSignal driven = drivenExcitation(trial, muscleNames(arm), setting.mapping);
-  return simulate(arm, driven, startOf(arm, setting, driven, options.startTime), options);
+  const ExcitationSignal driven = drivenExcitation(trial, muscleNames(system), setting.mapping);
+  return simulate(system, driven, startOf(system, setting, driven, options.startTime), options);
 }
 
-SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm,
+SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& system,
                                                 const ParameterCatalogue& catalogue,
                                                 const ParameterCatalogue::Setting& setting,
                                                 const std::vector<std::size_t>& wanted,
                                                 const ExcitationSignal& trial,
                                                 const SensitivityOptions& options) {
-  return simulateWithSensitivities(arm, setting, stepping::directionsOf(catalogue, setting, wanted),
-                                   trial, options);
+  return simulateWithSensitivities(
+      system, setting, stepping::directionsOf(catalogue, setting, wanted), trial, options);
 }
 
-SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm,
+SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& system,
                                                 const ParameterCatalogue::Setting& setting,
                                                 const std::vector<ParameterDirection>& wanted,
                                                 const ExcitationSignal& trial,
                                                 const SensitivityOptions& options) {
-  return stepping::SensitivityRun(arm, setting, trial, options).sensitivities(wanted);
+  return stepping::SensitivityRun(system, setting, trial, options).sensitivities(wanted);
 }
 
 namespace stepping {
 
-SensitivityRun::SensitivityRun(const MusculoskeletalSystem& arm,
+SensitivityRun::SensitivityRun(const MusculoskeletalSystem& system,
                                const ParameterCatalogue::Setting& setting,
                                const ExcitationSignal& trial, const SensitivityOptions& given)
-    : arm_(arm), setting_(setting), trial_(trial), given_(given) {
-  if (changesForces(arm, given.simulation)) {
+    : system_(system), setting_(setting), trial_(trial), given_(given) {
+  if (changesForces(system, given.simulation)) {
     own_ = given;
-    withOwnForces(arm, given.simulation, own_->simulation);
+    withOwnForces(system, given.simulation, own_->simulation);
   }
   const SensitivityOptions& used = options();
   const Integrator integrator = used.simulation.integrator;
   if (integrator != Integrator::variational && integrator != Integrator::variationalLeft) {
     throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
-  checkNodes(used.externalNodes, arm);
-  driven_ = drivenExcitation(trial, muscleNames(arm), setting.mapping);
-  start_ = startOf(arm, setting, driven_, used.simulation.startTime);
-  checkSimulation(arm, driven_, start_, used.simulation);
-  motion_ = simulateVariational(arm, driven_, start_, used.simulation, &tape_);
-  completeStates(arm, driven_, motion_);
-  addReactions(arm, driven_, used.simulation, motion_);
+  checkNodes(used.externalNodes, system);
+  driven_ = drivenExcitation(trial, muscleNames(system), setting.mapping);
+  start_ = startOf(system, setting, driven_, used.simulation.startTime);
+  checkSimulation(system, driven_, start_, used.simulation);
+  motion_ = simulateVariational(system, driven_, start_, used.simulation, &tape_);
+  completeStates(system, driven_, motion_);
+  addReactions(system, driven_, used.simulation, motion_);
 }
 
 SensitivityTrajectory SensitivityRun::sensitivities(const std::vector<ParameterDirection>& wanted) {
-  const ParameterEffects effects(arm_, setting_, wanted);
-  return withCoordinates(arm_.skeleton(), [&](auto N) {
-    SensitivityPass<decltype(N)::value> pass(arm_, effects, setting_, trial_, driven_,
+  const ParameterEffects effects(system_, setting_, wanted);
+  return withCoordinates(system_.skeleton(), [&](auto N) {
+    SensitivityPass<decltype(N)::value> pass(system_, effects, setting_, trial_, driven_,
                                              static_cast<Eigen::Index>(wanted.size()), options());
     return pass.run(std::move(motion_), start_, tape_);
   });

@@ -6,9 +6,9 @@ namespace bio::stepping {
 
 using Eigen::Index;
 
-ExcitationAdjoint::ExcitationAdjoint(const MusculoskeletalSystem& arm,
+ExcitationAdjoint::ExcitationAdjoint(const MusculoskeletalSystem& system,
                                      const ExcitationSignal& driven)
-    : arm_(arm), driven_(driven), now_(static_cast<Index>(arm.numMuscles())) {
+    : system_(system), driven_(driven), now_(static_cast<Index>(system.numMuscles())) {
   excitation_.setZero(now_.size(), static_cast<Index>(driven.times().size()));
   numbers_.setZero(3, now_.size());
 }
@@ -38,7 +38,7 @@ void ExcitationAdjoint::evaluate(double t, const Place& place, Eigen::VectorXd& 
 void ExcitationAdjoint::step(Piece& piece) {
   for (std::size_t i = 0; i < piece.steps.size(); ++i) {
     const auto si = static_cast<Index>(i);
-    piece.steps[i] = arm_.muscles()[i].activation.stepWithDerivatives(
+    piece.steps[i] = system_.muscles()[i].activation.stepWithDerivatives(
         piece.u0[si], piece.u1[si], now_[si], piece.end - piece.begin);
     now_[si] = piece.steps[i].value;
   }
@@ -59,7 +59,7 @@ ExcitationAdjoint::InTimes ExcitationAdjoint::pullBack(
       Piece& added = pieces_.emplace_back();
       added.u0.resize(now_.size());
       added.u1.resize(now_.size());
-      added.steps.resize(arm_.numMuscles());
+      added.steps.resize(system_.numMuscles());
     }
     while (next < rows.size() && rows[next] <= t + together) ++next;
     Piece& piece = pieces_[count];
@@ -116,7 +116,7 @@ void ExcitationAdjoint::finish(double time, const Eigen::VectorXd& lambda) {
   }
   for (Index i = 0; i < lambda.size(); ++i) {
     const auto si = static_cast<std::size_t>(i);
-    const ActivationDynamics::Start start = arm_.muscles()[si].activation.start(u[i]);
+    const ActivationDynamics::Start start = system_.muscles()[si].activation.start(u[i]);
     const double given = start.byExcitation * lambda[i];
     addExcitation(i, here, given);
     if (moves) delay_ -= given * (u1[i] - u0[i]) / (times[here.row + 1] - times[here.row]);

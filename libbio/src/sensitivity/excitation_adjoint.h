@@ -11,7 +11,7 @@ namespace bio::stepping {
 /// a step to that at its begin, while dJ in excitations, delay and the laws' numbers is gathered.
 class ExcitationAdjoint {
  public:
-  ExcitationAdjoint(const MusculoskeletalSystem& arm, const ExcitationSignal& driven);
+  ExcitationAdjoint(const MusculoskeletalSystem& system, const ExcitationSignal& driven);
 
   /// dJ in the times at both ends of a part.
   struct InTimes {
@@ -54,7 +54,7 @@ class ExcitationAdjoint {
     if (place.weight != 0) excitation_(muscle, k + 1) += place.weight * slope;
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const ExcitationSignal& driven_;
   std::vector<Piece> pieces_;  ///< room for those of one part, kept from part to part
   Eigen::VectorXd now_;

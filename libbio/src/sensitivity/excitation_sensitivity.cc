@@ -8,13 +8,13 @@ namespace bio::stepping {
 
 using Eigen::Index;
 
-std::vector<std::vector<RowsOfColumn>> excitationRows(const MusculoskeletalSystem& arm,
+std::vector<std::vector<RowsOfColumn>> excitationRows(const MusculoskeletalSystem& system,
                                                       const ParameterEffects& effects,
                                                       const ExcitationSignal& trial,
                                                       const EmgMapping& mapping) {
-  std::vector<std::vector<RowsOfColumn>> all(arm.numMuscles());
+  std::vector<std::vector<RowsOfColumn>> all(system.numMuscles());
   if (effects.emg.empty()) return all;
-  const std::vector<std::string> muscles = muscleNames(arm);
+  const std::vector<std::string> muscles = muscleNames(system);
   const EmgDerivatives d = emgDerivatives(trial, muscles, mapping);
   for (const auto& effect : effects.emg) {
     const auto index = [&](const std::string& name) {
@@ -57,16 +57,16 @@ std::vector<std::vector<RowsOfColumn>> excitationRows(const MusculoskeletalSyste
   return all;
 }
 
-ExcitationSensitivity::ExcitationSensitivity(const MusculoskeletalSystem& arm,
+ExcitationSensitivity::ExcitationSensitivity(const MusculoskeletalSystem& system,
                                              const ParameterEffects& effects,
                                              const ExcitationSignal& trial,
                                              const ExcitationSignal& driven,
                                              const EmgMapping& mapping)
-    : arm_(arm),
+    : system_(system),
       effects_(effects),
       driven_(driven),
-      emg_(excitationRows(arm, effects, trial, mapping)),
-      from_(static_cast<Index>(arm.numMuscles())),
+      emg_(excitationRows(system, effects, trial, mapping)),
+      from_(static_cast<Index>(system.numMuscles())),
       to_(from_),
       now_(from_) {
   findColumns();
@@ -92,8 +92,8 @@ void ExcitationSensitivity::start(double time, SensitivityMatrix& rows) {
   nextRow_ = 0;
   const info::LinearWeights here = info::linearAt(driven_.times(), time);
   for (std::size_t i = 0; i < emg_.size(); ++i) {
-    for (const RowsOfColumn& one : emg_[i]) {
-      rows(static_cast<Index>(i), placeOf(one.column)) += here.value(one.rows);
+    for (const RowsOfColumn& column : emg_[i]) {
+      rows(static_cast<Index>(i), placeOf(column.column)) += here.value(column.rows);
     }
   }
   // later by d: the excitation at the start is that of d earlier; none is known before the first
@@ -112,7 +112,7 @@ void ExcitationSensitivity::start(double time, SensitivityMatrix& rows) {
   driven_.at(time, hint_, from_);
   for (Index i = 0; i < rows.rows(); ++i) {
     const auto si = static_cast<std::size_t>(i);
-    const ActivationDynamics::Start start = arm_.muscles()[si].activation.start(from_[i]);
+    const ActivationDynamics::Start start = system_.muscles()[si].activation.start(from_[i]);
     if (start.byExcitation == 1) continue;
     rows.row(i) *= start.byExcitation;
     for (const QuantityEffect& effect : effects_.muscles[si].activation) {
@@ -144,7 +144,7 @@ void ExcitationSensitivity::advance(double t0, double t1, const Eigen::RowVector
       const auto si = static_cast<std::size_t>(i);
       const auto& effects = effects_.muscles[si];
       const ActivationStep p =
-          arm_.muscles()[si].activation.stepWithDerivatives(from_[i], to_[i], now_[i], h);
+          system_.muscles()[si].activation.stepWithDerivatives(from_[i], to_[i], now_[i], h);
       now_[i] = p.value;
       auto row = out.row(i);
       if (first) {
@@ -161,9 +161,9 @@ void ExcitationSensitivity::advance(double t0, double t1, const Eigen::RowVector
         row[placeOf(effect.column)] += effect.factor * ((beginsOnRow ? -p.d[3] : -p.d[0] * slope) +
                                                         (endsOnRow ? p.d[3] : -p.d[1] * slope));
       }
-      for (const RowsOfColumn& one : emg_[si]) {
-        row[placeOf(one.column)] +=
-            p.d[0] * atBegin.value(one.rows) + p.d[1] * atEnd.value(one.rows);
+      for (const RowsOfColumn& column : emg_[si]) {
+        row[placeOf(column.column)] +=
+            p.d[0] * atBegin.value(column.rows) + p.d[1] * atEnd.value(column.rows);
       }
       for (const QuantityEffect& effect : effects.activation) {
         row[placeOf(effect.column)] += effect.factor * p.d[4 + static_cast<Index>(effect.quantity)];

@@ -13,7 +13,7 @@ struct RowsOfColumn {
   Eigen::RowVectorXd rows;
 };
 /// Columns of every muscle: of all parameters of the mapping but the delay, which moves rows.
-std::vector<std::vector<RowsOfColumn>> excitationRows(const MusculoskeletalSystem& arm,
+std::vector<std::vector<RowsOfColumn>> excitationRows(const MusculoskeletalSystem& system,
                                                       const ParameterEffects& effects,
                                                       const ExcitationSignal& trial,
                                                       const EmgMapping& mapping);
@@ -22,7 +22,7 @@ std::vector<std::vector<RowsOfColumn>> excitationRows(const MusculoskeletalSyste
 /// of excitation from row to row of the trial, cut at the times of the steps.
 class ExcitationSensitivity {
  public:
-  ExcitationSensitivity(const MusculoskeletalSystem& arm, const ParameterEffects& effects,
+  ExcitationSensitivity(const MusculoskeletalSystem& system, const ParameterEffects& effects,
                         const ExcitationSignal& trial, const ExcitationSignal& driven,
                         const EmgMapping& mapping);
 
@@ -43,7 +43,7 @@ class ExcitationSensitivity {
                SensitivityMatrix& out);
 
  private:
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const ParameterEffects& effects_;
   const ExcitationSignal& driven_;
   Eigen::Index placeOf(Eigen::Index column) const;

@@ -14,12 +14,12 @@ class ForceSlopes {
  public:
   using Vector = Eigen::Matrix<double, N, 1>;
 
-  ForceSlopes(const MusculoskeletalSystem& arm, const ParameterEffects& effects)
-      : arm_(arm), effects_(effects) {
+  ForceSlopes(const MusculoskeletalSystem& system, const ParameterEffects& effects)
+      : system_(system), effects_(effects) {
     using Of = ForceNumberTarget::Of;
     for (const auto& force : effects.forces) {
       const bool isOnBodies = force.of == Of::pointSpring || force.of == Of::bushing;
-      if (isOnBodies && segments_.empty()) segments_ = arm.bodyForces().segments();
+      if (isOnBodies && segments_.empty()) segments_ = system.bodyForces().segments();
     }
   }
 
@@ -29,7 +29,7 @@ class ForceSlopes {
   void forEach(double t, const SystemConfiguration<N>& configuration, const Vector& v,
                const ExternalForce& external, const Use& use) {
     if (effects_.forces.empty()) return;
-    if (!segments_.empty()) moveSegments(arm_, configuration, segments_);
+    if (!segments_.empty()) moveSegments(system_, configuration, segments_);
     speeds_ = v;
     for (const auto& force : effects_.forces) {
       evaluate(force, t, configuration, v, external);
@@ -45,15 +45,15 @@ class ForceSlopes {
                 const ExternalForce& external) {
     switch (force.of) {
       case ForceNumberTarget::Of::pointSpring:
-        arm_.bodyForces().springInNumbers(force.place, segments_, slopes_);
+        system_.bodyForces().springInNumbers(force.place, segments_, slopes_);
         break;
       case ForceNumberTarget::Of::bushing:
-        arm_.bodyForces().bushingInNumbers(force.place, segments_, speeds_, slopes_);
+        system_.bodyForces().bushingInNumbers(force.place, segments_, speeds_, slopes_);
         break;
       case ForceNumberTarget::Of::elasticPath: {
-        const LengthJet<N>& path = configuration.length(arm_.numMuscles() + force.place);
+        const LengthJet<N>& path = configuration.length(system_.numMuscles() + force.place);
         const auto d =
-            arm_.elasticPaths()[force.place].law.inNumbers(path.length, path.dL_dq.dot(v));
+            system_.elasticPaths()[force.place].law.inNumbers(path.length, path.dL_dq.dot(v));
         slopes_.setZero(v.size(), static_cast<Eigen::Index>(d.size()));
         forEachMoved<N>(path, [&](int k, int) {
           for (std::size_t i = 0; i < d.size(); ++i) {
@@ -63,16 +63,16 @@ class ForceSlopes {
         break;
       }
       case ForceNumberTarget::Of::actuator: {
-        const CoordinateActuator& actuator = arm_.actuators()[force.place];
+        const CoordinateActuator& actuator = system_.actuators()[force.place];
         slopes_.setZero(v.size(), 1);
-        slopes_(arm_.skeleton().indexOf(actuator.coordinate), 0) =
+        slopes_(system_.skeleton().indexOf(actuator.coordinate), 0) =
             external.controlAt(actuator.name, t);
         break;
       }
     }
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const ParameterEffects& effects_;
   std::vector<MovingSegment> segments_;
   Eigen::VectorXd speeds_;

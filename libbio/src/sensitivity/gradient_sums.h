@@ -17,13 +17,13 @@ class GradientSums {
   using Vector = Eigen::Matrix<double, N, 1>;
 
   /// @param direct  made with one column, or any number: only its paths are used
-  GradientSums(const MusculoskeletalSystem& arm, DirectEffects<N>& direct,
+  GradientSums(const MusculoskeletalSystem& system, DirectEffects<N>& direct,
                const SystemConfiguration<N>& configuration, Index numParameters)
       : effects_(direct.effects()),
         direct_(direct),
-        inertia_(arm, direct.effects(), configuration),
+        inertia_(system, direct.effects(), configuration),
         changesInertia_(direct.changesInertia()),
-        muscles_(arm.numMuscles()),
+        muscles_(system.numMuscles()),
         columns_(Eigen::VectorXd::Zero(numParameters)) {
     for (std::size_t m = 0; m < muscles_.size(); ++m) {
       const auto& effects = effects_.muscles[m];

@@ -24,17 +24,17 @@ class InertiaAdjoint {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Field = Eigen::Matrix<double, 3, 4>;
 
-  InertiaAdjoint(const MusculoskeletalSystem& arm, const ParameterEffects& effects,
+  InertiaAdjoint(const MusculoskeletalSystem& system, const ParameterEffects& effects,
                  const SystemConfiguration<N>& configuration)
-      : arm_(arm), effects_(effects), configuration_(configuration) {
+      : system_(system), effects_(effects), configuration_(configuration) {
     for (const auto& effect : effects.segments) {
-      const auto have = [&](const OfSegment& one) { return one.segment == effect.segment; };
+      const auto have = [&](const OfSegment& segment) { return segment.segment == effect.segment; };
       if (std::none_of(segments_.begin(), segments_.end(), have)) {
         segments_.push_back({effect.segment, wayTo(effect.segment)});
       }
     }
     if (effects.gravity.empty()) return;
-    for (std::size_t s = 1; s < arm.skeleton().numSegments(); ++s) {
+    for (std::size_t s = 1; s < system.skeleton().numSegments(); ++s) {
       massive_.push_back({s, wayTo(s)});
     }
   }
@@ -42,14 +42,14 @@ class InertiaAdjoint {
   /// At the configuration's posture and a speed v.
   void add(const Vector& v, const Vector& a, const Vector& b) {
     Field A, B, dX;
-    for (OfSegment& one : segments_) {
-      fields(one, v, a, b, dX, A, B);
-      one.W.noalias() += A.transpose() * dX;
-      one.W.col(3).noalias() += B.transpose() * arm_.skeleton().gravity();
+    for (OfSegment& segment : segments_) {
+      fields(segment, v, a, b, dX, A, B);
+      segment.W.noalias() += A.transpose() * dX;
+      segment.W.col(3).noalias() += B.transpose() * system_.skeleton().gravity();
     }
     for (const OfSegment& one : massive_) {
       fields(one, v, a, b, dX, A, B);
-      const Segment& segment = arm_.skeleton().segments()[one.segment];
+      const Segment& segment = system_.skeleton().segments()[one.segment];
       gravity_ += B.leftCols<3>() * segment.massMoment + B.col(3) * segment.mass;
     }
   }
@@ -57,14 +57,14 @@ class InertiaAdjoint {
   /// Adds what was gathered to the parameters' derivatives.
   void addTo(Eigen::VectorXd& gradient) const {
     for (const auto& effect : effects_.segments) {
-      for (const OfSegment& one : segments_) {
-        if (one.segment != effect.segment) continue;
+      for (const OfSegment& segment : segments_) {
+        if (segment.segment != effect.segment) continue;
         Eigen::Matrix4d P;
         P.topLeftCorner<3, 3>() = effect.change.secondMoment;
         P.topRightCorner<3, 1>() = effect.change.massMoment;
         P.bottomLeftCorner<1, 3>() = effect.change.massMoment.transpose();
         P(3, 3) = effect.change.mass;
-        gradient[effect.column] += one.W.cwiseProduct(P).sum();
+        gradient[effect.column] += segment.W.cwiseProduct(P).sum();
       }
     }
     for (const QuantityEffect& effect : effects_.gravity) {
@@ -82,7 +82,7 @@ class InertiaAdjoint {
   std::vector<std::size_t> wayTo(std::size_t segment) const {
     std::vector<std::size_t> way;
     if constexpr (N == Eigen::Dynamic) {
-      const ArticulatedTree& tree = *arm_.tree();
+      const ArticulatedTree& tree = *system_.tree();
       for (int m = tree.mobilityOf(configuration_.places().segmentOf(segment)); m >= 0;) {
         way.push_back(static_cast<std::size_t>(m));
         m = tree.mobilities()[static_cast<std::size_t>(m)].parent;
@@ -93,16 +93,16 @@ class InertiaAdjoint {
   }
 
   /// Ẋ, Σ a_k ∂_kX + b_k Ẋ_k and Σ b_k ∂_kX
-  void fields(const OfSegment& one, const Vector& v, const Vector& a, const Vector& b, Field& dX,
-              Field& A, Field& B) const {
+  void fields(const OfSegment& segment, const Vector& v, const Vector& a, const Vector& b,
+              Field& dX, Field& A, Field& B) const {
     dX.setZero();
     A.setZero();
     B.setZero();
     if constexpr (N == Eigen::Dynamic) {
       const TreeMotion<double>& motion = configuration_.motion();
       SpatialVector<double> V = SpatialVector<double>::Zero(), inA = V, inB = V;
-      for (const std::size_t m : one.way) {
-        const Index k = arm_.tree()->mobilities()[m].coordinate;
+      for (const std::size_t m : segment.way) {
+        const Index k = system_.tree()->mobilities()[m].coordinate;
         // how the screw is carried along, with the sign of addTreeInertia
         const SpatialVector<double> bent = crossMotion(motion.screw[m], V);
         for (int i = 0; i < 6; ++i) {
@@ -111,12 +111,12 @@ class InertiaAdjoint {
           V[i] += motion.screw[m][i] * v[k];
         }
       }
-      const Placement<double> X = configuration_.placement(one.segment);
+      const Placement<double> X = configuration_.placement(segment.segment);
       dX = fieldOf(V, X);
       A = fieldOf(inA, X);
       B = fieldOf(inB, X);
     } else {
-      const RigidMotion<double, N>& X = configuration_.motions()[one.segment];
+      const RigidMotion<double, N>& X = configuration_.motions()[segment.segment];
       const auto enter = [](Field& field, double factor, const Placement<double>& change) {
         field.leftCols<3>() += factor * change.R;
         field.col(3) += factor * change.p;
@@ -141,7 +141,7 @@ class InertiaAdjoint {
     return field;
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const ParameterEffects& effects_;
   const SystemConfiguration<N>& configuration_;
   std::vector<OfSegment> segments_;  ///< those with parameters

@@ -30,15 +30,15 @@ class LinearisedStep {
     bool isHeld = false;
   };
 
-  LinearisedStep(const MusculoskeletalSystem& arm, const SimulationOptions& options,
+  LinearisedStep(const MusculoskeletalSystem& system, const SimulationOptions& options,
                  SystemConfiguration<N>& configuration)
-      : arm_(arm),
+      : system_(system),
         options_(options),
         symmetric_(options.integrator == Integrator::variational),
         configuration_(configuration),
-        others_(arm),
-        muscles_(arm.numMuscles()),
-        pieces_(arm.numMuscles()) {}
+        others_(system),
+        muscles_(system.numMuscles()),
+        pieces_(system.numMuscles()) {}
 
   /// Moves the configuration to the middle of part i.
   void moveTo(const StepTape& tape, std::size_t i) {
@@ -54,7 +54,7 @@ class LinearisedStep {
     configuration_.moveTo(q_m_);
     addSkeleton();
     addPassive();
-    for (std::size_t m = 0; m < arm_.numMuscles(); ++m) addMuscle(m, tape, i);
+    for (std::size_t m = 0; m < system_.numMuscles(); ++m) addMuscle(m, tape, i);
     combine();
   }
 
@@ -86,7 +86,7 @@ class LinearisedStep {
 
   /// Speeds of the prescribed coordinates at the end, 0 for the others.
   Vector givenSpeeds() const {
-    Vector q = Vector::Zero(countOf<N>(arm_)), speed = q;
+    Vector q = Vector::Zero(countOf<N>(system_)), speed = q;
     options_.prescribed.place(end_, q, speed);
     return speed;
   }
@@ -94,14 +94,14 @@ class LinearisedStep {
  private:
   /// (M v) and L_q = ½ vᵀ∂M v − ∂V over the middle configuration and the speed
   void addSkeleton() {
-    const int n = countOf<N>(arm_);
+    const int n = countOf<N>(system_);
     const EnergyDerivatives<N>& energy = configuration_.energy(v_);
     M_ = energy.T_vv;
     L_q_ = -energy.V_q;
     Mv_q_.setZero(n, n);
     L_qq_ = -energy.V_qq;
     L_qv_.setZero(n, n);
-    if (!arm_.skeleton().hasConstantInertia()) {
+    if (!system_.skeleton().hasConstantInertia()) {
       L_q_ += energy.T_q;
       Mv_q_ = energy.T_vq;
       L_qv_ = energy.T_vq.transpose();
@@ -110,11 +110,11 @@ class LinearisedStep {
   }
 
   void addPassive() {
-    const int n = countOf<N>(arm_);
+    const int n = countOf<N>(system_);
     f_.setZero(n);
     f_q_.setZero(n, n);
     f_v_.setZero(n, n);
-    arm_.coordinateForces().template add<N>(q_m_, v_, f_, f_q_, f_v_);
+    system_.coordinateForces().template add<N>(q_m_, v_, f_, f_q_, f_v_);
     if (!options_.externalForce.empty()) {
       ExternalForce::At external = options_.externalForce.at(middle_);
       f_ += external.value;
@@ -130,7 +130,7 @@ class LinearisedStep {
 
   void addMuscle(std::size_t m, const StepTape& tape, std::size_t i) {
     const auto sm = static_cast<Index>(m);
-    const SimulatedMuscle& muscle = arm_.muscles()[m].muscle;
+    const SimulatedMuscle& muscle = system_.muscles()[m].muscle;
     const LengthJet<N>& path = configuration_.length(m);
     OfMuscle& here = muscles_[m];
     here.activation = tape.middleActivation(i + 1)[sm];
@@ -181,20 +181,20 @@ class LinearisedStep {
   }
 
   void invert() {
-    if (arm_.prescribed().empty()) {
+    if (system_.prescribed().empty()) {
       perJ_ = J_.inverse();
       return;
     }
-    for (const int k : arm_.prescribed()) {
+    for (const int k : system_.prescribed()) {
       J_.row(k).setZero();
       J_(k, k) = 1;
     }
     givenColumns_ = J_.inverse();
     perJ_ = givenColumns_;
-    for (const int k : arm_.prescribed()) perJ_.col(k).setZero();
+    for (const int k : system_.prescribed()) perJ_.col(k).setZero();
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const SimulationOptions& options_;
   bool symmetric_;
   SystemConfiguration<N>& configuration_;

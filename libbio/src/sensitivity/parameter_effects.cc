@@ -10,14 +10,14 @@ namespace bio::stepping {
 /// Enters one step of a direction where its target is touched.
 struct ParameterEffects::Enter {
   ParameterEffects& effects;
-  const MusculoskeletalSystem& arm;
+  const MusculoskeletalSystem& system;
   const Model& model;
   double value, weight;
   Eigen::Index column;
 
   void operator()(const MuscleTarget& target) const {
     const std::size_t i = indexOf(model.muscles[target.muscle].name);
-    if (i == arm.numMuscles()) return;
+    if (i == system.numMuscles()) return;
     OfMuscle& muscle = effects.muscles[i];
     const auto quantity = static_cast<std::size_t>(target.quantity);
     if (target.quantity == MuscleQuantity::activation1) {
@@ -25,7 +25,7 @@ struct ParameterEffects::Enter {
     } else if (target.quantity == MuscleQuantity::activation2) {
       muscle.activation.push_back({2, column, weight});
     } else {
-      // a scale multiplies the curve that the catalogue's model has; the arm's is scaled already
+      // a scale multiplies the curve that the catalogue's model has; the system's is scaled already
       const bool isScale = quantity >= static_cast<std::size_t>(MuscleQuantity::tendonStrainScale);
       muscle.fibre.push_back({quantity, column, isScale ? weight / value : weight});
       if (target.quantity == MuscleQuantity::timeScale) {
@@ -36,19 +36,19 @@ struct ParameterEffects::Enter {
   void operator()(const MuscleNumberTarget& target) const {
     const Muscle& given = model.muscles[target.muscle];
     const std::size_t i = indexOf(given.name);
-    if (i == arm.numMuscles()) return;
+    if (i == system.numMuscles()) return;
     OfMuscle& muscle = effects.muscles[i];
     muscle.fibre.push_back({target.place, column, weight});
     const std::string_view name =
         std::visit([&](const auto& p) { return p.properties[target.place].name; }, *given.hill);
-    const auto own = arm.muscles()[i].activation.names();
+    const auto own = system.muscles()[i].activation.names();
     for (std::size_t k = 0; k < own.size(); ++k) {
       if (own[k] == name) muscle.activation.push_back({k, column, weight});
     }
   }
   void operator()(const PointTarget& target) const {
     const std::size_t i = indexOf(model.muscles[target.muscle].name);
-    if (i == arm.numMuscles()) return;
+    if (i == system.numMuscles()) return;
     effects.muscles[i].points.push_back(
         {3 * target.point + static_cast<std::size_t>(target.axis), column, weight});
   }
@@ -56,7 +56,7 @@ struct ParameterEffects::Enter {
     const std::string& name = model.wrapObjects[target.wrap].name;
     for (const Muscle& muscle : model.muscles) {
       const std::size_t i = indexOf(muscle.name);
-      if (i == arm.numMuscles()) continue;
+      if (i == system.numMuscles()) continue;
       for (std::size_t place = 0; place < muscle.path.wraps.size(); ++place) {
         if (muscle.path.wraps[place].wrapObject != name) continue;
         effects.muscles[i].wraps.push_back(
@@ -65,27 +65,27 @@ struct ParameterEffects::Enter {
     }
   }
   void operator()(const BodyTarget& target) const {
-    effects.addBody(arm, model.bodies[target.body], target.component, column, weight);
+    effects.addBody(system, model.bodies[target.body], target.component, column, weight);
   }
   void operator()(const LimitForceTarget& target) const {
     const CoordinateLimitForce& law = model.limitForces[target.force];
     effects.limitForces.push_back({law,
-                                   arm.skeleton().indexOf(law.coordinate),
+                                   system.skeleton().indexOf(law.coordinate),
                                    {static_cast<std::size_t>(target.component), column, weight}});
   }
   void operator()(const SpringForceTarget& target) const {
     const SpringGeneralizedForce& law = model.springForces[target.force];
     effects.springForces.push_back({law,
-                                    arm.skeleton().indexOf(law.coordinate),
+                                    system.skeleton().indexOf(law.coordinate),
                                     {static_cast<std::size_t>(target.component), column, weight}});
   }
   void operator()(const ForceNumberTarget& target) const {
-    effects.addForce(arm, model, target, column, weight);
+    effects.addForce(system, model, target, column, weight);
   }
   void operator()(const ExpressionTarget& target) const {
     const ExpressionBasedCoordinateForce& law = model.expressionForces[target.force];
     effects.expressions.push_back({CoordinateExpression(law),
-                                   arm.skeleton().indexOf(law.coordinate),
+                                   system.skeleton().indexOf(law.coordinate),
                                    {target.constant, column, weight}});
   }
   void operator()(const GravityTarget& target) const {
@@ -105,27 +105,27 @@ struct ParameterEffects::Enter {
   /// numMuscles() where the system lacks the muscle.
   std::size_t indexOf(const std::string& name) const {
     std::size_t i = 0;
-    while (i < arm.numMuscles() && arm.muscles()[i].name != name) ++i;
+    while (i < system.numMuscles() && system.muscles()[i].name != name) ++i;
     return i;
   }
 };
 
-ParameterEffects::ParameterEffects(const MusculoskeletalSystem& arm,
+ParameterEffects::ParameterEffects(const MusculoskeletalSystem& system,
                                    const ParameterCatalogue::Setting& setting,
                                    const std::vector<ParameterDirection>& wanted)
-    : muscles(arm.numMuscles()) {
+    : muscles(system.numMuscles()) {
   Eigen::Index column = 0;
   for (const ParameterDirection& direction : wanted) {
     for (const TargetStep& step : direction) {
-      std::visit(Enter{*this, arm, setting.model, step.value, step.weight, column}, step.target);
+      std::visit(Enter{*this, system, setting.model, step.value, step.weight, column}, step.target);
     }
     ++column;
   }
 }
 
-void ParameterEffects::addBody(const MusculoskeletalSystem& arm, const Body& body, int component,
+void ParameterEffects::addBody(const MusculoskeletalSystem& system, const Body& body, int component,
                                Eigen::Index column, double weight) {
-  const BodyPlacement& place = arm.skeleton().placeOf(body.name);
+  const BodyPlacement& place = system.skeleton().placeOf(body.name);
   if (place.segment == 0) return;
   const Eigen::Matrix3d& R = place.X_SB.R;
   const Eigen::Vector3d center = R * body.massCenter + place.X_SB.p;
@@ -162,7 +162,7 @@ void ParameterEffects::addBody(const MusculoskeletalSystem& arm, const Body& bod
   segments.push_back({place.segment, std::move(change), column});
 }
 
-void ParameterEffects::addForce(const MusculoskeletalSystem& arm, const Model& model,
+void ParameterEffects::addForce(const MusculoskeletalSystem& system, const Model& model,
                                 const ForceNumberTarget& target, Eigen::Index column,
                                 double weight) {
   using Of = ForceNumberTarget::Of;
@@ -175,16 +175,16 @@ void ParameterEffects::addForce(const MusculoskeletalSystem& arm, const Model& m
   };
   switch (target.of) {
     case Of::pointSpring:
-      acts = arm.bodyForces().hasSpring(place);
+      acts = system.bodyForces().hasSpring(place);
       break;
     case Of::bushing:
-      acts = arm.bodyForces().hasBushing(place);
+      acts = system.bodyForces().hasBushing(place);
       break;
     case Of::elasticPath:
-      find(arm.elasticPaths(), model.elasticPaths[target.force].name);
+      find(system.elasticPaths(), model.elasticPaths[target.force].name);
       break;
     case Of::actuator:
-      find(arm.actuators(), model.actuators[target.force].name);
+      find(system.actuators(), model.actuators[target.force].name);
       break;
   }
   if (!acts) return;

@@ -19,7 +19,7 @@ struct QuantityEffect {
 /// The columns of wanted parameters sorted by what they touch.
 class ParameterEffects {
  public:
-  ParameterEffects(const MusculoskeletalSystem& arm, const ParameterCatalogue::Setting& setting,
+  ParameterEffects(const MusculoskeletalSystem& system, const ParameterCatalogue::Setting& setting,
                    const std::vector<ParameterDirection>& wanted);
 
   struct OfMuscle {
@@ -81,9 +81,9 @@ class ParameterEffects {
 
  private:
   struct Enter;
-  void addForce(const MusculoskeletalSystem& arm, const Model& model,
+  void addForce(const MusculoskeletalSystem& system, const Model& model,
                 const ForceNumberTarget& target, Eigen::Index column, double weight);
-  void addBody(const MusculoskeletalSystem& arm, const Body& body, int component,
+  void addBody(const MusculoskeletalSystem& system, const Body& body, int component,
                Eigen::Index column, double weight);
 };
 

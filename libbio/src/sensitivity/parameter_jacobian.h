@@ -21,17 +21,21 @@ class DirectEffects {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Rows = typename SensitivityState<N>::Rows;
 
-  DirectEffects(const MusculoskeletalSystem& arm, const ParameterEffects& effects,
+  DirectEffects(const MusculoskeletalSystem& system, const ParameterEffects& effects,
                 const Model& model, const SystemConfiguration<N>& configuration, Index columns)
-      : arm_(arm), effects_(effects), configuration_(configuration), forceSlopes_(arm, effects) {
-    inertia_.setZero(countOf<N>(arm), columns);
-    slope_.setZero(countOf<N>(arm), columns);
-    for (std::size_t m = 0; m < arm.numMuscles(); ++m) {
-      const SystemMuscle& muscle = arm.muscles()[m];
-      gradients_.emplace_back(model, arm.skeleton(), findMuscle(model, muscle.name), muscle.path);
+      : system_(system),
+        effects_(effects),
+        configuration_(configuration),
+        forceSlopes_(system, effects) {
+    inertia_.setZero(countOf<N>(system), columns);
+    slope_.setZero(countOf<N>(system), columns);
+    for (std::size_t m = 0; m < system.numMuscles(); ++m) {
+      const SystemMuscle& muscle = system.muscles()[m];
+      gradients_.emplace_back(model, system.skeleton(), findMuscle(model, muscle.name),
+                              muscle.path);
       if constexpr (N == Eigen::Dynamic) {
-        workspaces_.push_back(gradients_.back().workspace(arm.treePath(m)));
-        treeWork_.push_back(arm.treePath(m).newWork());
+        workspaces_.push_back(gradients_.back().workspace(system.treePath(m)));
+        treeWork_.push_back(system.treePath(m).newWork());
       } else {
         workspaces_.push_back(gradients_.back().template workspace<N>());
       }
@@ -48,7 +52,7 @@ class DirectEffects {
   const PathGradient<N>& geometry(std::size_t m, const Vector& q) {
     PathGradient<N>& gradient = workspaces_[m];
     if constexpr (N == Eigen::Dynamic) {
-      gradients_[m].evaluate(q, arm_.treePath(m), *arm_.tree(), configuration_.motion(),
+      gradients_[m].evaluate(q, system_.treePath(m), *system_.tree(), configuration_.motion(),
                              treeWork_[m], gradient);
     } else {
       gradients_[m].template evaluate<N>(q, configuration_.motions().data(), gradient);
@@ -117,7 +121,7 @@ class DirectEffects {
     inertia_.setZero();
     slope_.setZero();
     if constexpr (N == Eigen::Dynamic) {
-      addTreeInertia(arm_, configuration_, effects_, v, inertia_, slope_);
+      addTreeInertia(system_, configuration_, effects_, v, inertia_, slope_);
     } else {
       computeFixedInertia(v);
     }
@@ -144,15 +148,16 @@ class DirectEffects {
           return X.second[static_cast<std::size_t>(pairIndex(k, l))];
         });
         inertia_(k, effect.column) += detail::momentProduct(effect.change, X_k, dX);
-        slope_(k, effect.column) += detail::momentProduct(effect.change, dX_k, dX) +
-                                    arm_.skeleton().gravity().dot(X_k.R * effect.change.massMoment +
-                                                                  X_k.p * effect.change.mass);
+        slope_(k, effect.column) +=
+            detail::momentProduct(effect.change, dX_k, dX) +
+            system_.skeleton().gravity().dot(X_k.R * effect.change.massMoment +
+                                             X_k.p * effect.change.mass);
       }
     }
     for (const QuantityEffect& effect : effects_.gravity) {
       const auto axis = static_cast<Index>(effect.quantity);
-      for (std::size_t s = 1; s < arm_.skeleton().numSegments(); ++s) {
-        const Segment& segment = arm_.skeleton().segments()[s];
+      for (std::size_t s = 1; s < system_.skeleton().numSegments(); ++s) {
+        const Segment& segment = system_.skeleton().segments()[s];
         for (int k = 0; k < N; ++k) {
           const Placement<double>& X_k =
               configuration_.motions()[s].first[static_cast<std::size_t>(k)];
@@ -163,7 +168,7 @@ class DirectEffects {
     }
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const ParameterEffects& effects_;
   const SystemConfiguration<N>& configuration_;
   ForceSlopes<N> forceSlopes_;

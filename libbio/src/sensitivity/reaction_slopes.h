@@ -20,11 +20,11 @@ class ReactionSlopes {
   using Rows = typename SensitivityState<N>::Rows;
 
   /// @param configuration  shared with the caller, who moves it to the row's coordinates
-  ReactionSlopes(const MusculoskeletalSystem& arm, const SimulationOptions& simulation,
+  ReactionSlopes(const MusculoskeletalSystem& system, const SimulationOptions& simulation,
                  const ExcitationSignal& driven, SystemConfiguration<N>& configuration,
                  DirectEffects<N>& direct)
-      : arm_(arm),
-        dynamics_(arm, driven, simulation.externalForce, simulation.prescribed),
+      : system_(system),
+        dynamics_(system, driven, simulation.externalForce, simulation.prescribed),
         configuration_(configuration),
         direct_(direct),
         external_(simulation.externalForce),
@@ -46,15 +46,15 @@ class ReactionSlopes {
     tau_.noalias() += tau_v * speed;
     direct_.addOtherForces(motion.time[static_cast<std::size_t>(row)], q, qDot, external_, tau_);
     state.columns.addNodes(motion.time[static_cast<std::size_t>(row)], tau_);
-    for (std::size_t i = 0; i < arm_.numMuscles(); ++i) {
+    for (std::size_t i = 0; i < system_.numMuscles(); ++i) {
       addMuscle(i, q, forces.row(static_cast<Index>(i)), state);
     }
     addInertia(q, qDot);
     Rows X = tau_;
-    for (const int k : arm_.prescribed()) X.row(k).setZero();
+    for (const int k : system_.prescribed()) X.row(k).setZero();
     X = dynamics_.factor().solve(X).eval();
     tau_ = dynamics_.massMatrix() * X - tau_;
-    for (const int k : arm_.prescribed()) {
+    for (const int k : system_.prescribed()) {
       state.columns.record(tau_.row(k), result.reaction[static_cast<std::size_t>(k)].row(row));
     }
   }
@@ -95,7 +95,7 @@ class ReactionSlopes {
     direct_.computeInertia(qDot);
     tau_ += direct_.slope();
     const double speed = qDot.cwiseAbs().maxCoeff();
-    if (arm_.skeleton().hasConstantInertia() || speed == 0) return;
+    if (system_.skeleton().hasConstantInertia() || speed == 0) return;
     // a way δ of 1e-5 rad or m: δ²/6 = 2e-11 of truncation, and rounding of about 1e-16/δ = 1e-11
     const double dt = 1e-5 / speed;
     configuration_.moveSkeletonTo(q + dt * qDot);
@@ -106,7 +106,7 @@ class ReactionSlopes {
     tau_ += direct_.momentum() / (2 * dt);
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   SystemDynamics<N> dynamics_;
   SystemConfiguration<N>& configuration_;
   DirectEffects<N>& direct_;

@@ -18,26 +18,26 @@ class SensitivityPass {
   using RowVector = Eigen::RowVectorXd;
   using Vector = Eigen::Matrix<double, N, 1>;
 
-  SensitivityPass(const MusculoskeletalSystem& arm, const ParameterEffects& effects,
+  SensitivityPass(const MusculoskeletalSystem& system, const ParameterEffects& effects,
                   const ParameterCatalogue::Setting& setting, const ExcitationSignal& trial,
                   const ExcitationSignal& driven, Index numParameters,
                   const SensitivityOptions& options)
-      : arm_(arm),
+      : system_(system),
         options_(options),
         driven_(driven),
-        configuration_(arm),
+        configuration_(system),
         state_{SensitivityColumns(numParameters, options.externalNodes),
                {},
                {},
                {},
-               ActivationColumns({arm, effects, trial, driven, setting.mapping},
-                                 static_cast<Index>(arm.numMuscles()))},
-        direct_(arm, effects, setting.model, configuration_, state_.columns.count()),
-        step_(arm, options.simulation, configuration_, direct_, state_.columns.count()) {
+               ActivationColumns({system, effects, trial, driven, setting.mapping},
+                                 static_cast<Index>(system.numMuscles()))},
+        direct_(system, effects, setting.model, configuration_, state_.columns.count()),
+        step_(system, options.simulation, configuration_, direct_, state_.columns.count()) {
     const Index columns = state_.columns.count();
-    state_.dq.setZero(countOf<N>(arm), columns);
-    state_.dp.setZero(countOf<N>(arm), columns);
-    state_.fibre.setZero(static_cast<Index>(arm.numMuscles()), columns);
+    state_.dq.setZero(countOf<N>(system), columns);
+    state_.dp.setZero(countOf<N>(system), columns);
+    state_.fibre.setZero(static_cast<Index>(system.numMuscles()), columns);
     unit_.setZero(columns);
     unit_[state_.columns.ofTime()] = 1;
   }
@@ -46,7 +46,7 @@ class SensitivityPass {
     const StopWatch watch;
     SensitivityTrajectory result;
     result.motion = std::move(motion);
-    SensitivityRecorder<N> recorder(arm_, options_, driven_, configuration_, direct_,
+    SensitivityRecorder<N> recorder(system_, options_, driven_, configuration_, direct_,
                                     state_.columns, result);
     const double first = result.motion.time.front();
     begin(start, first);
@@ -68,7 +68,7 @@ class SensitivityPass {
   void begin(const SystemState& start, double time) {
     const Vector q = start.q;
     Vector qDot = start.qDot;
-    if (!arm_.prescribed().empty()) {
+    if (!system_.prescribed().empty()) {
       Vector placed = q;
       options_.simulation.prescribed.place(time, placed, qDot);
     }
@@ -86,9 +86,9 @@ class SensitivityPass {
     dp += direct_.momentum();
     for (Index k = 0; k < dq.rows(); ++k) dp += energy.T_vq.col(k) * dq.row(k);
     activation.start(time);
-    for (std::size_t i = 0; i < arm_.numMuscles(); ++i) {
+    for (std::size_t i = 0; i < system_.numMuscles(); ++i) {
       const auto si = static_cast<Index>(i);
-      const SimulatedMuscle& muscle = arm_.muscles()[i].muscle;
+      const SimulatedMuscle& muscle = system_.muscles()[i].muscle;
       const LengthJet<N>& path = configuration_.length(i);
       const StaticEquilibrium rest = muscle.rest(start.activation[si], path.length);
       const SimulatedMuscle::RestSlopes d =
@@ -132,7 +132,7 @@ class SensitivityPass {
     state_.columns.widen(unit_);
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const SensitivityOptions& options_;
   const ExcitationSignal& driven_;
   SystemConfiguration<N> configuration_;

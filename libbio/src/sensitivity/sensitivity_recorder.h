@@ -19,11 +19,11 @@ class SensitivityRecorder {
   using State = SensitivityState<N>;
 
   /// @param result  holds the motion already
-  SensitivityRecorder(const MusculoskeletalSystem& arm, const SensitivityOptions& options,
+  SensitivityRecorder(const MusculoskeletalSystem& system, const SensitivityOptions& options,
                       const ExcitationSignal& driven, SystemConfiguration<N>& configuration,
                       DirectEffects<N>& direct, const SensitivityColumns& columns,
                       SensitivityTrajectory& result)
-      : arm_(arm),
+      : system_(system),
         muscles_(options.muscles || options.reactions),
         configuration_(configuration),
         direct_(direct),
@@ -32,19 +32,19 @@ class SensitivityRecorder {
     const auto room = [&](std::size_t count) {
       return std::vector<SensitivityMatrix>(count, SensitivityMatrix(rows_, columns.numRecorded()));
     };
-    const auto n = static_cast<std::size_t>(countOf<N>(arm));
+    const auto n = static_cast<std::size_t>(countOf<N>(system));
     result.q = room(n);
     result.qDot = room(n);
     if (muscles_) {
-      result.fibreLength = result.activation = result.tendonForce = room(arm.numMuscles());
+      result.fibreLength = result.activation = result.tendonForce = room(system.numMuscles());
       recordThickness(columns.numRecorded());
     }
-    if (options.reactions && !arm.prescribed().empty()) {
+    if (options.reactions && !system.prescribed().empty()) {
       result.reaction.resize(n);
-      for (const int k : arm.prescribed()) {
+      for (const int k : system.prescribed()) {
         result.reaction[static_cast<std::size_t>(k)].resize(rows_, columns.numRecorded());
       }
-      reactions_.emplace(arm, options.simulation, driven, configuration, direct);
+      reactions_.emplace(system, options.simulation, driven, configuration, direct);
     }
   }
 
@@ -55,13 +55,13 @@ class SensitivityRecorder {
     const Vector qDot = result_.motion.qDot.col(row_);
     if (muscles_) {
       configuration_.moveTo(q);
-    } else if (!arm_.skeleton().hasConstantInertia() || direct_.changesInertia()) {
+    } else if (!system_.skeleton().hasConstantInertia() || direct_.changesInertia()) {
       configuration_.moveSkeletonTo(q);
     }
     addCoordinates(qDot, state);
-    if (muscles_) forces_.resize(static_cast<Index>(arm_.numMuscles()), state.columns.count());
-    for (std::size_t i = 0; muscles_ && i < arm_.numMuscles(); ++i) {
-      if (arm_.muscles()[i].muscle.hasFibreState()) {
+    if (muscles_) forces_.resize(static_cast<Index>(system_.numMuscles()), state.columns.count());
+    for (std::size_t i = 0; muscles_ && i < system_.numMuscles(); ++i) {
+      if (system_.muscles()[i].muscle.hasFibreState()) {
         addMuscle(i, q, state);
       } else {
         addRigid(i, q, qDot, state);
@@ -73,8 +73,8 @@ class SensitivityRecorder {
 
  private:
   void recordThickness(Index columns) {
-    for (std::size_t i = 0; i < arm_.numMuscles(); ++i) {
-      const PerMuscleNumber d = arm_.muscles()[i].muscle.thicknessInNumbers();
+    for (std::size_t i = 0; i < system_.numMuscles(); ++i) {
+      const PerMuscleNumber d = system_.muscles()[i].muscle.thicknessInNumbers();
       RowVector& row = result_.thickness.emplace_back(RowVector::Zero(columns));
       for (const QuantityEffect& effect : direct_.effects().muscles[i].fibre) {
         row[effect.column] += effect.factor * d[effect.quantity];
@@ -87,14 +87,14 @@ class SensitivityRecorder {
     const EnergyDerivatives<N>& energy = configuration_.energy(qDot);
     direct_.computeInertia(qDot);
     momentum_ = state.dp - direct_.momentum();
-    if (!arm_.skeleton().hasConstantInertia()) {
+    if (!system_.skeleton().hasConstantInertia()) {
       for (Index k = 0; k < state.dq.rows(); ++k) {
         momentum_ -= energy.T_vq.col(k) * state.dq.row(k);
       }
     }
     const Matrix perMass = inverseMass(energy.T_vv);
     speed_.noalias() = perMass * momentum_;
-    for (int k = 0; k < countOf<N>(arm_); ++k) {
+    for (int k = 0; k < countOf<N>(system_); ++k) {
       const auto sk = static_cast<std::size_t>(k);
       state.columns.record(state.dq.row(k), result_.q[sk].row(row_));
       state.columns.record(speed_.row(k), result_.qDot[sk].row(row_));
@@ -103,16 +103,16 @@ class SensitivityRecorder {
 
   /// M⁻¹; of prescribed coordinates the speed is given, and its derivative is 0.
   Matrix inverseMass(const Matrix& M) {
-    if (arm_.prescribed().empty()) return M.inverse();
+    if (system_.prescribed().empty()) return M.inverse();
     Matrix reduced = M;
-    decouple(arm_.prescribed(), reduced);
-    for (const int k : arm_.prescribed()) momentum_.row(k).setZero();
+    decouple(system_.prescribed(), reduced);
+    for (const int k : system_.prescribed()) momentum_.row(k).setZero();
     return reduced.inverse();
   }
 
   void addMuscle(std::size_t i, const Vector& q, const State& state) {
     const auto si = static_cast<Index>(i);
-    const SimulatedMuscle& muscle = arm_.muscles()[i].muscle;
+    const SimulatedMuscle& muscle = system_.muscles()[i].muscle;
     const LengthJet<N>& path = configuration_.length(i);
     const double l = result_.motion.fibreLength(si, row_);
     const double activation = result_.motion.activation(si, row_);
@@ -142,7 +142,7 @@ class SensitivityRecorder {
   /// With a rigid tendon fibre length and force follow from the row.
   void addRigid(std::size_t i, const Vector& q, const Vector& qDot, const State& state) {
     const auto si = static_cast<Index>(i);
-    const SimulatedMuscle& muscle = arm_.muscles()[i].muscle;
+    const SimulatedMuscle& muscle = system_.muscles()[i].muscle;
     const LengthJet<N>& path = configuration_.length(i);
     const double activation = result_.motion.activation(si, row_);
     const double speed = path.dL_dq.dot(qDot);
@@ -172,7 +172,7 @@ class SensitivityRecorder {
     state.columns.record(force, result_.tendonForce[i].row(row_));
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   bool muscles_;
   SystemConfiguration<N>& configuration_;
   DirectEffects<N>& direct_;

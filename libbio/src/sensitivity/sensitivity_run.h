@@ -14,7 +14,7 @@ class SensitivityRun {
  public:
   /// Simulates the motion. The arguments must outlive this object.
   /// @throws what simulateWithSensitivities() throws
-  SensitivityRun(const MusculoskeletalSystem& arm, const ParameterCatalogue::Setting& setting,
+  SensitivityRun(const MusculoskeletalSystem& system, const ParameterCatalogue::Setting& setting,
                  const ExcitationSignal& trial, const SensitivityOptions& options);
 
   SensitivityRun(const SensitivityRun&) = delete;
@@ -27,11 +27,11 @@ class SensitivityRun {
  private:
   const SensitivityOptions& options() const { return own_ ? *own_ : given_; }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const ParameterCatalogue::Setting& setting_;
   const ExcitationSignal& trial_;
   const SensitivityOptions& given_;
-  std::optional<SensitivityOptions> own_;  ///< with forces that the arm turns into its own
+  std::optional<SensitivityOptions> own_;  ///< with forces that the system turns into its own
   ExcitationSignal driven_;
   SystemState start_;
   StepTape tape_;

@@ -17,16 +17,16 @@ class SensitivityStep {
   using State = SensitivityState<N>;
   using Rows = typename State::Rows;
 
-  SensitivityStep(const MusculoskeletalSystem& arm, const SimulationOptions& options,
+  SensitivityStep(const MusculoskeletalSystem& system, const SimulationOptions& options,
                   SystemConfiguration<N>& configuration, DirectEffects<N>& direct, Index columns)
-      : arm_(arm),
+      : system_(system),
         options_(options),
         configuration_(configuration),
         direct_(direct),
-        step_(arm, options, configuration) {
-    forward_.setZero(countOf<N>(arm), columns);
-    force_.setZero(countOf<N>(arm), columns);
-    trialFibre_.setZero(static_cast<Index>(arm.numMuscles()), columns);
+        step_(system, options, configuration) {
+    forward_.setZero(countOf<N>(system), columns);
+    force_.setZero(countOf<N>(system), columns);
+    trialFibre_.setZero(static_cast<Index>(system.numMuscles()), columns);
     row_.setZero(columns);
   }
 
@@ -66,7 +66,7 @@ class SensitivityStep {
     state.columns.addNodes(step_.middle(), force_);
 
     // muscles: dℓ′ = trialFibre + (V_L/2J) ∂ℓ·dq′
-    for (std::size_t m = 0; m < arm_.numMuscles(); ++m) {
+    for (std::size_t m = 0; m < system_.numMuscles(); ++m) {
       if (step_.muscle(m).hasFibre) {
         addElastic(m, timeMoves, state);
       } else {
@@ -86,7 +86,7 @@ class SensitivityStep {
     }
     if (timeMoves) {
       forward_.noalias() -= (perJ * step_.residualInLength()) * row_;
-      if (dt1 && !arm_.prescribed().empty()) {
+      if (dt1 && !system_.prescribed().empty()) {
         forward_.noalias() += Vector(step_.givenColumns() * step_.givenSpeeds()) * *dt1;
       }
     }
@@ -99,7 +99,7 @@ class SensitivityStep {
     if (timeMoves) state.dp.noalias() += step_.momentumInLength() * row_;
 
     // ℓ′ and q′
-    for (std::size_t m = 0; m < arm_.numMuscles(); ++m) {
+    for (std::size_t m = 0; m < system_.numMuscles(); ++m) {
       const auto sm = static_cast<Index>(m);
       const LengthJet<N>& path = configuration_.length(m);
       setAlong(state.fibre.row(sm), trialFibre_.row(sm), step_.muscle(m).half, path, forward_);
@@ -149,7 +149,7 @@ class SensitivityStep {
     const LengthJet<N>& path = configuration_.length(m);
     const auto& effects = direct_.effects().muscles[m];
     if (!effects.fibre.empty()) {
-      const SimulatedMuscle::InNumbers d = arm_.muscles()[m].muscle.inNumbers(
+      const SimulatedMuscle::InNumbers d = system_.muscles()[m].muscle.inNumbers(
           here.activation, here.l_m, path.length, here.l_v, step_.pieces(m));
       for (const QuantityEffect& effect : effects.fibre) {
         trial[effect.column] += effect.factor * here.perJ * d.dV[effect.quantity];
@@ -171,7 +171,7 @@ class SensitivityStep {
   void addShortest(std::size_t m, Row& trial) {
     const auto& effects = direct_.effects().muscles[m];
     if (effects.fibre.empty()) return;
-    const PerMuscleNumber d = arm_.muscles()[m].muscle.shortestInNumbers();
+    const PerMuscleNumber d = system_.muscles()[m].muscle.shortestInNumbers();
     for (const QuantityEffect& effect : effects.fibre) {
       trial[effect.column] += effect.factor * d[effect.quantity];
     }
@@ -193,7 +193,7 @@ class SensitivityStep {
     const auto& effects = direct_.effects().muscles[m];
     if (!effects.fibre.empty()) {
       const PerMuscleNumber d =
-          arm_.muscles()[m].muscle.rigidInNumbers(here.activation, path.length, here.speed);
+          system_.muscles()[m].muscle.rigidInNumbers(here.activation, path.length, here.speed);
       for (const QuantityEffect& effect : effects.fibre) {
         force_.col(effect.column) -= effect.factor * d[effect.quantity] * path.dL_dq;
       }
@@ -209,7 +209,7 @@ class SensitivityStep {
     });
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const SimulationOptions& options_;
   SystemConfiguration<N>& configuration_;
   DirectEffects<N>& direct_;

@@ -60,11 +60,11 @@ void addSegment(const ArticulatedTree& tree, const TreeMotion<double>& motion, i
 
 }  // namespace
 
-void addTreeInertia(const MusculoskeletalSystem& arm,
+void addTreeInertia(const MusculoskeletalSystem& system,
                     const SystemConfiguration<Eigen::Dynamic>& configuration,
                     const ParameterEffects& effects, const Eigen::VectorXd& v, TreeRows& momentum,
                     TreeRows& slope) {
-  const ArticulatedTree& tree = *arm.tree();
+  const ArticulatedTree& tree = *system.tree();
   const TreeMotion<double>& motion = configuration.motion();
   for (const auto& effect : effects.segments) {
     addSegment(tree, motion, configuration.places().segmentOf(effect.segment),

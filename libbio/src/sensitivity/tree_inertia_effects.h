@@ -14,7 +14,7 @@ using TreeRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 /// linear in a segment's moments: with δI its changed inertia and V its velocity, for every
 /// mobility j on the way to it (symbols of tree_energy.h)
 ///     S_j·δI V   and   −b_j·δI V + g·(linear part of δI S_j)
-void addTreeInertia(const MusculoskeletalSystem& arm,
+void addTreeInertia(const MusculoskeletalSystem& system,
                     const SystemConfiguration<Eigen::Dynamic>& configuration,
                     const ParameterEffects& effects, const Eigen::VectorXd& v, TreeRows& momentum,
                     TreeRows& slope);

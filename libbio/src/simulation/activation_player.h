@@ -13,9 +13,12 @@ namespace bio::stepping {
 /// excitation are met exactly whatever the step of the simulation.
 class ActivationPlayer {
  public:
-  ActivationPlayer(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+  ActivationPlayer(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                    double time)
-      : arm_(&arm), excitation_(&excitation), from_(excitation.numMuscles()), to_(from_.size()) {
+      : system_(&system),
+        excitation_(&excitation),
+        from_(excitation.numMuscles()),
+        to_(from_.size()) {
     excitation.at(time, hint_, from_);
   }
 
@@ -30,7 +33,7 @@ class ActivationPlayer {
       const double stop = next < rows.size() ? std::min(rows[next], t1) : t1;
       excitation_->at(stop, hint_, to_);
       for (Eigen::Index i = 0; i < activation.size(); ++i) {
-        activation[i] = arm_->muscles()[static_cast<std::size_t>(i)].activation.step(
+        activation[i] = system_->muscles()[static_cast<std::size_t>(i)].activation.step(
             from_[i], to_[i], activation[i], stop - t);
       }
       from_.swap(to_);
@@ -44,7 +47,7 @@ class ActivationPlayer {
   }
 
  private:
-  const MusculoskeletalSystem* arm_;
+  const MusculoskeletalSystem* system_;
   const ExcitationSignal* excitation_;
   Eigen::VectorXd from_;
   Eigen::VectorXd to_;

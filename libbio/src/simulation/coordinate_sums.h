@@ -14,8 +14,8 @@ constexpr int countOf(int number) {
   return N == Eigen::Dynamic ? number : N;
 }
 template <int N>
-int countOf(const MusculoskeletalSystem& arm) {
-  return countOf<N>(arm.skeleton().numCoordinates());
+int countOf(const MusculoskeletalSystem& system) {
+  return countOf<N>(system.skeleton().numCoordinates());
 }
 
 /// Calls use(coordinate, slot) for every coordinate that moves a path; slots number these.

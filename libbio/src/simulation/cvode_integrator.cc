@@ -90,12 +90,12 @@ void silent(int, const char*, const char*, char*, void*) {}
 template <int N>
 class AdaptiveRun {
  public:
-  AdaptiveRun(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+  AdaptiveRun(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
               const SystemState& start, const SimulationOptions& options)
-      : arm_(arm),
+      : system_(system),
         options_(options),
-        task_{{arm, excitation, options.externalForce, options.prescribed}, arm.switches()},
-        recorder_(arm, numRows(options)),
+        task_{{system, excitation, options.externalForce, options.prescribed}, system.switches()},
+        recorder_(system, numRows(options)),
         reached_(options.startTime) {
     const std::vector<double>& outside = options.externalForce.times();
     std::set_union(excitation.times().begin(), excitation.times().end(), outside.begin(),
@@ -157,7 +157,7 @@ class AdaptiveRun {
   void* cvode() const { return memory_.get(); }
 
   void record(double t) {
-    const auto n = static_cast<Eigen::Index>(arm_.numMuscles());
+    const auto n = static_cast<Eigen::Index>(system_.numMuscles());
     auto state = view(y_.get());
     task_.dynamics.place(t, state);
     const auto work = view(work_.get());
@@ -206,7 +206,7 @@ class AdaptiveRun {
   std::string whatWasLost() const {
     const Eigen::VectorXd& at = task_.dynamics.lostAt();
     if (at.size() == 0) return {};
-    return ": " + describeLostPath(arm_, at);
+    return ": " + describeLostPath(system_, at);
   }
 
   /// At a switch: from here on the equations are others.
@@ -234,12 +234,12 @@ class AdaptiveRun {
     recorder_.trajectory().newtonIterations += more;
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const SimulationOptions& options_;
   AdaptiveTask<N> task_;
   Recorder recorder_;
   double reached_;               ///< [s]
-  std::vector<double> corners_;  ///< of what drives the arm [s]
+  std::vector<double> corners_;  ///< of what drives the system [s]
   std::size_t corner_ = 0;
   std::vector<int> crossed_;  ///< by switch: whether, and which way
   Owned<SUNContext, FreeContext> context_;
@@ -251,10 +251,10 @@ class AdaptiveRun {
 
 }  // namespace
 
-Trajectory simulateCvode(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+Trajectory simulateCvode(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                          const SystemState& start, const SimulationOptions& options) {
-  return withCoordinates(arm.skeleton(), [&](auto N) {
-    return AdaptiveRun<decltype(N)::value>(arm, excitation, start, options).run();
+  return withCoordinates(system.skeleton(), [&](auto N) {
+    return AdaptiveRun<decltype(N)::value>(system, excitation, start, options).run();
   });
 }
 

@@ -17,9 +17,9 @@ const char* name(Integrator integrator) {
 }
 
 std::optional<Integrator> integratorNamed(const std::string& text) {
-  for (const Integrator one : {Integrator::variational, Integrator::variationalLeft,
-                               Integrator::rungeKutta4, Integrator::cvode}) {
-    if (text == name(one)) return one;
+  for (const Integrator integrator : {Integrator::variational, Integrator::variationalLeft,
+                                      Integrator::rungeKutta4, Integrator::cvode}) {
+    if (text == name(integrator)) return integrator;
   }
   return std::nullopt;
 }

@@ -20,9 +20,9 @@ decltype(auto) withCoordinates(const Skeleton& skeleton, F&& function) {
 /// Trajectory with room for `rows` rows, filled from the front.
 class Recorder {
  public:
-  Recorder(const MusculoskeletalSystem& arm, std::size_t rows) {
-    const auto n = static_cast<Eigen::Index>(arm.numMuscles());
-    const auto N = static_cast<Eigen::Index>(arm.skeleton().numCoordinates());
+  Recorder(const MusculoskeletalSystem& system, std::size_t rows) {
+    const auto n = static_cast<Eigen::Index>(system.numMuscles());
+    const auto N = static_cast<Eigen::Index>(system.skeleton().numCoordinates());
     const auto K = static_cast<Eigen::Index>(rows);
     trajectory_.time.reserve(rows);
     trajectory_.q.resize(N, K);
@@ -89,39 +89,40 @@ class StopWatch {
 };
 
 /// What simulate() requires of its arguments. @throws std::invalid_argument
-void checkSimulation(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+void checkSimulation(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                      const SystemState& start, const SimulationOptions& options);
 
 /// One line that names the first muscle whose path has no taut string in a posture, why, and the
 /// posture; empty: each path has one.
-std::string describeLostPath(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q);
+std::string describeLostPath(const MusculoskeletalSystem& system, const Eigen::VectorXd& q);
 
 /// Fills in what follows from the rest of a motion: fibre lengths where the tendon is rigid, and
 /// activations that are the excitation.
-void completeStates(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+void completeStates(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                     Trajectory& motion);
 
 /// Adds the reactions of the prescribed coordinates to a motion; to one of the variational
 /// integrators, which do not sum it up themselves, also their work by the trapezoidal rule.
-void addReactions(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+void addReactions(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                   const SimulationOptions& options, Trajectory& motion);
 
 /// The options with the system's optimal forces in the external force; `own` holds them where that
 /// differs.
-const SimulationOptions& withOwnForces(const MusculoskeletalSystem& arm,
+const SimulationOptions& withOwnForces(const MusculoskeletalSystem& system,
                                        const SimulationOptions& options, SimulationOptions& own);
 /// Whether it does.
-bool changesForces(const MusculoskeletalSystem& arm, const SimulationOptions& options);
+bool changesForces(const MusculoskeletalSystem& system, const SimulationOptions& options);
 
 class StepTape;
 
 /// @param tape takes down every part of a step that was accepted, for sensitivities; may be null
-Trajectory simulateVariational(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
-                               const SystemState& start, const SimulationOptions& options,
-                               StepTape* tape = nullptr);
-Trajectory simulateRungeKutta4(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
-                               const SystemState& start, const SimulationOptions& options);
-Trajectory simulateCvode(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+Trajectory simulateVariational(const MusculoskeletalSystem& system,
+                               const ExcitationSignal& excitation, const SystemState& start,
+                               const SimulationOptions& options, StepTape* tape = nullptr);
+Trajectory simulateRungeKutta4(const MusculoskeletalSystem& system,
+                               const ExcitationSignal& excitation, const SystemState& start,
+                               const SimulationOptions& options);
+Trajectory simulateCvode(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                          const SystemState& start, const SimulationOptions& options);
 
 }  // namespace bio::stepping

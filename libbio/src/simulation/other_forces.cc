@@ -19,10 +19,10 @@ Vector6 moved(const Vector6& A, const Vector6& B) {
 
 }  // namespace
 
-void moveSegments(const MusculoskeletalSystem& arm,
+void moveSegments(const MusculoskeletalSystem& system,
                   const SystemConfiguration<Eigen::Dynamic>& configuration,
                   std::vector<MovingSegment>& segments) {
-  const ArticulatedTree& tree = *arm.tree();
+  const ArticulatedTree& tree = *system.tree();
   const TreeMotion<double>& motion = configuration.motion();
   for (MovingSegment& segment : segments) {
     segment.X = configuration.placement(segment.segment);

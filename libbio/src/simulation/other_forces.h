@@ -31,7 +31,7 @@ void moveSegments(const MusculoskeletalSystem&, const SystemConfiguration<N>& co
     }
   }
 }
-void moveSegments(const MusculoskeletalSystem& arm,
+void moveSegments(const MusculoskeletalSystem& system,
                   const SystemConfiguration<Eigen::Dynamic>& configuration,
                   std::vector<MovingSegment>& segments);
 
@@ -43,14 +43,14 @@ class OtherForces {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
 
-  explicit OtherForces(const MusculoskeletalSystem& arm)
-      : arm_(&arm),
-        isAny_(!arm.bodyForces().empty() || !arm.elasticPaths().empty()),
-        segments_(arm.bodyForces().segments()),
-        load_(Vector::Zero(countOf<N>(arm))),
+  explicit OtherForces(const MusculoskeletalSystem& system)
+      : system_(&system),
+        isAny_(!system.bodyForces().empty() || !system.elasticPaths().empty()),
+        segments_(system.bodyForces().segments()),
+        load_(Vector::Zero(countOf<N>(system))),
         load_t_(load_),
         along_(load_),
-        load_q_(Matrix::Zero(countOf<N>(arm), countOf<N>(arm))) {}
+        load_q_(Matrix::Zero(countOf<N>(system), countOf<N>(system))) {}
 
   bool any() const { return isAny_; }
 
@@ -61,14 +61,14 @@ class OtherForces {
     load_t_.setZero();
     load_q_.setZero();
     if (!segments_.empty()) {
-      moveSegments(*arm_, configuration, segments_);
+      moveSegments(*system_, configuration, segments_);
       speeds_ = v;
       BodyForceSums sums{passive, passive_q, passive_v, load_, load_q_, load_t_};
-      arm_->bodyForces().add(t, segments_, speeds_, sums);
+      system_->bodyForces().add(t, segments_, speeds_, sums);
     }
-    for (std::size_t i = 0; i < arm_->elasticPaths().size(); ++i) {
-      const LengthJet<N>& path = configuration.length(arm_->numMuscles() + i);
-      const PathTension r = arm_->elasticPaths()[i].law.tension(path.length, path.dL_dq.dot(v));
+    for (std::size_t i = 0; i < system_->elasticPaths().size(); ++i) {
+      const LengthJet<N>& path = configuration.length(system_->numMuscles() + i);
+      const PathTension r = system_->elasticPaths()[i].law.tension(path.length, path.dL_dq.dot(v));
       addAlong<N>(passive, -r.force, path);
       along_ = r.dForce_dLength * path.dL_dq;
       addSecondTimes<N>(along_, r.dForce_dSpeed, path, v);
@@ -83,7 +83,7 @@ class OtherForces {
   const Vector& load_t() const { return load_t_; }  ///< ∂load/∂t
 
  private:
-  const MusculoskeletalSystem* arm_;
+  const MusculoskeletalSystem* system_;
   bool isAny_;
   std::vector<MovingSegment> segments_;
   Eigen::VectorXd speeds_;

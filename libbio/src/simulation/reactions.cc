@@ -3,15 +3,15 @@
 
 namespace bio::stepping {
 
-void addReactions(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+void addReactions(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                   const SimulationOptions& options, Trajectory& motion) {
-  if (arm.prescribed().empty()) return;
+  if (system.prescribed().empty()) return;
   const auto rows = static_cast<Eigen::Index>(motion.time.size());
-  motion.reaction.setZero(arm.skeleton().numCoordinates(), rows);
+  motion.reaction.setZero(system.skeleton().numCoordinates(), rows);
   const bool addsWork = options.integrator == Integrator::variational ||
                         options.integrator == Integrator::variationalLeft;
-  withCoordinates(arm.skeleton(), [&](auto N) {
-    SystemDynamics<decltype(N)::value> dynamics(arm, excitation, options.externalForce,
+  withCoordinates(system.skeleton(), [&](auto N) {
+    SystemDynamics<decltype(N)::value> dynamics(system, excitation, options.externalForce,
                                                 options.prescribed);
     Eigen::VectorXd y(dynamics.size()), yDot(y);
     double work = 0, powerBefore = 0;

@@ -6,7 +6,7 @@
 namespace bio::stepping {
 namespace {
 
-/// Speeds and lengths beyond these are no motion of an arm any more.
+/// Speeds and lengths beyond these are no motion of a system any more.
 constexpr double largestEnergyError = 0.05;  ///< of the work done; 1e-11 on stable runs
 constexpr double largestSpeed = 100;         ///< [rad/s] or [m/s]
 
@@ -35,8 +35,8 @@ class FibreStability {
 };
 
 /// Very long steps leap over the stiff states; then the energy gives them away.
-void cutWhereEnergyIsMadeUp(const MusculoskeletalSystem& arm, Trajectory& motion, double step) {
-  const Eigen::VectorXd imbalance = energyImbalance(arm, motion);
+void cutWhereEnergyIsMadeUp(const MusculoskeletalSystem& system, Trajectory& motion, double step) {
+  const Eigen::VectorXd imbalance = energyImbalance(system, motion);
   const double work = motion.muscleWork.cwiseAbs().maxCoeff() +
                       motion.passiveWork.cwiseAbs().maxCoeff() +
                       motion.externalWork.cwiseAbs().maxCoeff();
@@ -100,16 +100,16 @@ class ExplicitRun {
   using State = Eigen::VectorXd;
   using Vector = Eigen::Matrix<double, N, 1>;
 
-  ExplicitRun(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+  ExplicitRun(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
               const SystemState& start, const SimulationOptions& options)
-      : arm_(arm),
+      : system_(system),
         options_(options),
-        dynamics_(arm, excitation, options.externalForce, options.prescribed),
+        dynamics_(system, excitation, options.externalForce, options.prescribed),
         y_(dynamics_.pack(start)),
         end_(y_),
         step_(dynamics_, y_),
-        stability_(arm.numMuscles()),
-        recorder_(arm, numRows(options)) {
+        stability_(system.numMuscles()),
+        recorder_(system, numRows(options)) {
     dynamics_.place(options.startTime, y_);
     hold(dynamics_.coordinates(y_));
   }
@@ -134,7 +134,8 @@ class ExplicitRun {
     }
     trajectory.wallSeconds = watch.seconds();
     Trajectory result = recorder_.finish();
-    if (result.outcome == Outcome::completed) cutWhereEnergyIsMadeUp(arm_, result, options_.step);
+    if (result.outcome == Outcome::completed)
+      cutWhereEnergyIsMadeUp(system_, result, options_.step);
     return result;
   }
 
@@ -142,12 +143,12 @@ class ExplicitRun {
   template <class At>
   void hold(const At& at) {
     held_ = at;
-    if (!arm_.switches().empty()) dynamics_.holdConditions(held_);
+    if (!system_.switches().empty()) dynamics_.holdConditions(held_);
   }
 
   void record(double t) {
     dynamics_.place(t, y_);
-    const auto n = static_cast<Eigen::Index>(arm_.numMuscles());
+    const auto n = static_cast<Eigen::Index>(system_.numMuscles());
     recorder_.add(t, dynamics_.coordinates(y_), dynamics_.speeds(y_), dynamics_.activations(y_),
                   y_.tail(n), work_.muscle, work_.passive, work_.external);
   }
@@ -156,11 +157,11 @@ class ExplicitRun {
   bool advance(double t, double h) {
     step_.begin(t, y_);
     const std::size_t runaway = stability_.update(h, dynamics_);
-    if (runaway < arm_.numMuscles()) {
+    if (runaway < system_.numMuscles()) {
       return fail(t,
                   fmt::format("a step of {:.3g} s is beyond the limit of stability for the "
                               "fibre of '{}' (h|∂V/∂ℓ| = {:.3g}, must stay below {})",
-                              options_.step, arm_.muscles()[runaway].name,
+                              options_.step, system_.muscles()[runaway].name,
                               -h * dynamics_.rate(runaway).dV_dFibreLength, FibreStability::limit),
                   t);
     }
@@ -202,12 +203,12 @@ class ExplicitRun {
   }
 
   const PathSwitch* crossed() const {
-    return firstCrossed(arm_.switches(), held_, dynamics_.coordinates(y_),
+    return firstCrossed(system_.switches(), held_, dynamics_.coordinates(y_),
                         dynamics_.coordinates(end_));
   }
 
   std::string whyNotANumber() const {
-    if (dynamics_.lostAt().size() > 0) return describeLostPath(arm_, dynamics_.lostAt());
+    if (dynamics_.lostAt().size() > 0) return describeLostPath(system_, dynamics_.lostAt());
     return "a muscle fibre left its valid domain (not a number)";
   }
 
@@ -219,7 +220,7 @@ class ExplicitRun {
     return false;
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const SimulationOptions& options_;
   SystemDynamics<N> dynamics_;
   State y_, end_;
@@ -232,10 +233,11 @@ class ExplicitRun {
 
 }  // namespace
 
-Trajectory simulateRungeKutta4(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
-                               const SystemState& start, const SimulationOptions& options) {
-  return withCoordinates(arm.skeleton(), [&](auto N) {
-    return ExplicitRun<decltype(N)::value>(arm, excitation, start, options).run();
+Trajectory simulateRungeKutta4(const MusculoskeletalSystem& system,
+                               const ExcitationSignal& excitation, const SystemState& start,
+                               const SimulationOptions& options) {
+  return withCoordinates(system.skeleton(), [&](auto N) {
+    return ExplicitRun<decltype(N)::value>(system, excitation, start, options).run();
   });
 }
 

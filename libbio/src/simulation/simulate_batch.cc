@@ -68,16 +68,16 @@ bool haveSameActivation(const SystemMuscle& a, const SystemMuscle& b) {
 class SharedCourse {
  public:
   SharedCourse(const LaneJob& job, const SimulationOptions& options)
-      : job_(&job), course_(*job.arm, *job.excitation, *job.start, options) {}
+      : job_(&job), course_(*job.system, *job.excitation, *job.start, options) {}
 
   bool fits(const LaneJob& other) const {
     if (job_->excitation != other.excitation ||
-        job_->arm->numMuscles() != other.arm->numMuscles() ||
+        job_->system->numMuscles() != other.system->numMuscles() ||
         job_->start->activation != other.start->activation) {
       return false;
     }
-    for (std::size_t i = 0; i < job_->arm->numMuscles(); ++i) {
-      if (!haveSameActivation(job_->arm->muscles()[i], other.arm->muscles()[i])) return false;
+    for (std::size_t i = 0; i < job_->system->numMuscles(); ++i) {
+      if (!haveSameActivation(job_->system->muscles()[i], other.system->muscles()[i])) return false;
     }
     return true;
   }
@@ -93,7 +93,7 @@ class LaneGroup {
  public:
   struct Member {
     const LaneJob* job;
-    const HingeModel<Single>* arm;
+    const HingeModel<Single>* system;
     lanes::ActivationCourse* course;
     Trajectory* result;
     bool succeeded = false;
@@ -102,9 +102,9 @@ class LaneGroup {
   LaneGroup(std::vector<Member> members, const SimulationOptions& options)
       : members_(std::move(members)),
         options_(&options),
-        arms_(lanes::lanesFor(*members_.front().arm)) {
+        arms_(lanes::lanesFor(*members_.front().system)) {
     // lanes without a job hold the first one's numbers
-    for (int l = 0; l < lanes::width; ++l) setLane(arms_, l, *members_.front().arm);
+    for (int l = 0; l < lanes::width; ++l) setLane(arms_, l, *members_.front().system);
     muscles_.resize(arms_.muscles.size());
     step_.muscles = muscles_.data();
     step_.newtonTolerance = options.newtonTolerance;
@@ -149,10 +149,10 @@ class LaneGroup {
     }
     lane.member = &members_[next_++];
     const Member& m = *lane.member;
-    setLane(arms_, indexOf(lane), *m.arm);
+    setLane(arms_, indexOf(lane), *m.system);
     armsChanged_ = true;
-    lane.driver.emplace(*m.job->arm, *m.job->excitation, *m.job->start, *options_, *m.course,
-                        m.arm->mass);
+    lane.driver.emplace(*m.job->system, *m.job->excitation, *m.job->start, *options_, *m.course,
+                        m.system->mass);
     ask(lane);
   }
 
@@ -161,7 +161,7 @@ class LaneGroup {
     member.succeeded = lane.driver->succeeded();
     if (!member.succeeded) return;
     *member.result = lane.driver->finish();
-    stepping::completeStates(*member.job->arm, *member.job->excitation, *member.result);
+    stepping::completeStates(*member.job->system, *member.job->excitation, *member.result);
   }
 
   /// The lane's next step; false if its job has none.
@@ -216,9 +216,9 @@ std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
   std::vector<std::optional<HingeModel<Single>>> arms(jobs.size());
   std::vector<bool> waiting(jobs.size(), true);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    stepping::checkSimulation(*jobs[i].arm, *jobs[i].excitation, *jobs[i].start, options);
-    if (known && !stepping::changesForces(*jobs[i].arm, options))
-      arms[i] = lanes::hingeModel(*jobs[i].arm);
+    stepping::checkSimulation(*jobs[i].system, *jobs[i].excitation, *jobs[i].start, options);
+    if (known && !stepping::changesForces(*jobs[i].system, options))
+      arms[i] = lanes::hingeModel(*jobs[i].system);
   }
   const MakeSolver makeSolver = solverFor(instructions);
   std::vector<std::unique_ptr<SharedCourse>> courses;
@@ -243,7 +243,7 @@ std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
   }
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (arms[i]) continue;
-    results[i] = simulate(*jobs[i].arm, *jobs[i].excitation, *jobs[i].start, options);
+    results[i] = simulate(*jobs[i].system, *jobs[i].excitation, *jobs[i].start, options);
   }
   return results;
 }

@@ -24,7 +24,7 @@ class StepTape {
   struct Time {
     enum class Law { row, onSwitch, middle } law = Law::row;
     double value = 0;                   ///< [s]
-    const PathSwitch* met = nullptr;    ///< onSwitch; of the arm
+    const PathSwitch* met = nullptr;    ///< onSwitch; of the system
     std::size_t first = 0, second = 0;  ///< middle: of which times
   };
   /// A step or part of one; its states are columns of the tape, the first one is the start's.

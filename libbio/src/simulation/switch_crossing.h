@@ -12,9 +12,9 @@ namespace bio::stepping {
 // so that no stage or trial step sees a length beyond a jump; they end a step on the jump and hold
 // those of its other side from there on.
 
-/// A configuration on the other side of a switch that the arm has come to: q but for 1e-7 of one
+/// A configuration on the other side of a switch that the system has come to: q but for 1e-7 of one
 /// coordinate.
-/// @param before  the sign of PathSwitch::distance on the side that the arm comes from
+/// @param before  the sign of PathSwitch::distance on the side that the system comes from
 template <class Coordinates>
 Coordinates beyondSwitch(const PathSwitch& met, Coordinates q, double before) {
   const double at = q[met.freeIndex];

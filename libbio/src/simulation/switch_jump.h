@@ -15,8 +15,8 @@ class SwitchSides {
  public:
   using Vector = typename SystemConfiguration<N>::Vector;
 
-  explicit SwitchSides(const MusculoskeletalSystem& arm)
-      : configuration_(arm), lengths_(arm.numPaths()) {}
+  explicit SwitchSides(const MusculoskeletalSystem& system)
+      : configuration_(system), lengths_(system.numPaths()) {}
 
   /// Whether a length jumps by more than 1e-5 m there. @param q  on the switch
   bool lengthJumps(const PathSwitch& met, const Vector& q) {

@@ -25,21 +25,21 @@ class SystemDynamics {
   using Matrix = Eigen::Matrix<double, N, N>;
   using State = Eigen::VectorXd;
 
-  SystemDynamics(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+  SystemDynamics(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                  const ExternalForce& external = noExternalForce,
                  const PrescribedMotion& prescribed = nothingPrescribed)
-      : arm_(arm),
+      : system_(system),
         excitation_(excitation),
         externalForce_(external),
         prescribed_(prescribed),
-        configuration_(arm),
-        others_(arm),
-        numCoordinates_(arm.skeleton().numCoordinates()),
-        numMuscles_(static_cast<Eigen::Index>(arm.numMuscles())),
+        configuration_(system),
+        others_(system),
+        numCoordinates_(system.skeleton().numCoordinates()),
+        numMuscles_(static_cast<Eigen::Index>(system.numMuscles())),
         u_(State::Zero(numMuscles_)),
-        rate_(arm.numMuscles()),
-        rigid_(arm.numMuscles()),
-        pieces_(arm.numMuscles()),
+        rate_(system.numMuscles()),
+        rigid_(system.numMuscles()),
+        pieces_(system.numMuscles()),
         qDot_(Vector::Zero(numCoordinates_)),
         acceleration_(qDot_),
         muscle_(qDot_),
@@ -50,7 +50,7 @@ class SystemDynamics {
         tau_q_(Matrix::Zero(numCoordinates_, numCoordinates_)),
         tau_v_(tau_q_),
         factor_(numCoordinates_) {
-    if constexpr (N == Eigen::Dynamic) rates_.emplace(*arm.tree());
+    if constexpr (N == Eigen::Dynamic) rates_.emplace(*system.tree());
   }
 
   Eigen::Index size() const { return 2 * count() + 2 * numMuscles_; }
@@ -102,7 +102,7 @@ class SystemDynamics {
     speeds(yDot) = acceleration_;
     for (Eigen::Index i = 0; i < numMuscles_; ++i) {
       const auto si = static_cast<std::size_t>(i);
-      yDot[2 * count() + i] = arm_.muscles()[si].activation.rate(u_[i], y[2 * count() + i]);
+      yDot[2 * count() + i] = system_.muscles()[si].activation.rate(u_[i], y[2 * count() + i]);
       yDot[2 * count() + numMuscles_ + i] = rate_[si].fibreVelocity;
     }
     return {muscle_.dot(qDot_), passive_.dot(qDot_), external_.dot(qDot_) + reaction_.dot(qDot_)};
@@ -122,11 +122,11 @@ class SystemDynamics {
       const auto si = static_cast<std::size_t>(i);
       const FibreRateDerivatives& r = rate_[si];
       const LengthJet<N>& path = configuration_.length(si);
-      const auto& law = arm_.muscles()[si].activation;
+      const auto& law = system_.muscles()[si].activation;
       const Eigen::Index a = 2 * count() + i;
       jacobian(a, a) = law.rateSlope(u_[i], y[a]);
       addSecond<N>(dForce_dq, -r.tendonForce, path);
-      if (!arm_.muscles()[si].muscle.hasFibreState()) {
+      if (!system_.muscles()[si].muscle.hasFibreState()) {
         const muscles::RigidRate<double>& rigid = rigid_[si];
         along_ = rigid.dF_dPathLength * path.dL_dq;
         addSecondTimes<N>(along_, rigid.dF_dPathSpeed, path, qDot_);
@@ -148,7 +148,7 @@ class SystemDynamics {
     }
     jacobian.block(count(), 0, n, n) = factor_.solve(dForce_dq);
     jacobian.block(count(), count(), n, n) = factor_.solve(dForce_dqDot);
-    for (const int k : arm_.prescribed()) {
+    for (const int k : system_.prescribed()) {
       for (const Eigen::Index at : {Eigen::Index{k}, count() + k}) {
         jacobian.row(at).setZero();
         jacobian.col(at).setZero();
@@ -185,7 +185,7 @@ class SystemDynamics {
     } else {
       const InertiaJet<N>& inertia = configuration_.inertia();
       dForce_dq -= inertia.d2V;
-      if (arm_.skeleton().hasConstantInertia()) return;
+      if (system_.skeleton().hasConstantInertia()) return;
       for (int k = 0; k < N; ++k) {
         const auto sk = static_cast<std::size_t>(k);
         for (int j = 0; j < N; ++j) {
@@ -213,7 +213,7 @@ class SystemDynamics {
     }
     massMatrix_ = M;
     reduced_ = M;
-    decouple(arm_.prescribed(), reduced_);
+    decouple(system_.prescribed(), reduced_);
     factor_.compute(reduced_);
   }
 
@@ -233,7 +233,7 @@ class SystemDynamics {
     acceleration_ = factor_.solve(reaction_);
     along_.noalias() = massMatrix_ * acceleration_ - force_;
     reaction_.setZero();
-    for (const int k : arm_.prescribed()) reaction_[k] = along_[k];
+    for (const int k : system_.prescribed()) reaction_[k] = along_[k];
   }
 
   /// −Ṁ q̇ + ½ q̇ᵀ∂M q̇ − ∂V; factors M.
@@ -246,7 +246,7 @@ class SystemDynamics {
     } else {
       const InertiaJet<N>& inertia = configuration_.inertia();
       force -= inertia.dV;
-      if (!arm_.skeleton().hasConstantInertia()) {
+      if (!system_.skeleton().hasConstantInertia()) {
         for (int k = 0; k < N; ++k) {
           const Vector M_k_v = inertia.dM[static_cast<std::size_t>(k)] * qDot_;
           force[k] += qDot_.dot(M_k_v) / 2;
@@ -268,7 +268,7 @@ class SystemDynamics {
     passive_.setZero();
     tau_q_.setZero();
     tau_v_.setZero();
-    arm_.coordinateForces().template add<N>(q, qDot_, passive_, tau_q_, tau_v_);
+    system_.coordinateForces().template add<N>(q, qDot_, passive_, tau_q_, tau_v_);
     external_.setZero();
     externalForce_.add(t, externalRow_, external_);
     if (others_.any()) {
@@ -279,7 +279,7 @@ class SystemDynamics {
     muscle_.setZero();
     for (Eigen::Index i = 0; i < numMuscles_; ++i) {
       const auto si = static_cast<std::size_t>(i);
-      const SystemMuscle& muscle = arm_.muscles()[si];
+      const SystemMuscle& muscle = system_.muscles()[si];
       const LengthJet<N>& path = configuration_.length(si);
       if (std::isnan(path.length) && q.allFinite()) lostAt_ = q;
       const double activation = muscle.activation.acting(u_[i], y[2 * count() + i]);
@@ -298,7 +298,7 @@ class SystemDynamics {
     solveAcceleration();
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const ExcitationSignal& excitation_;
   const ExternalForce& externalForce_;
   const PrescribedMotion& prescribed_;

@@ -8,23 +8,23 @@
 namespace bio {
 namespace {
 
-const Skeleton& skeletonWithTree(const MusculoskeletalSystem& arm) {
-  if (!arm.tree()) throw std::invalid_argument("the system's skeleton is not a tree");
-  return arm.skeleton();
+const Skeleton& skeletonWithTree(const MusculoskeletalSystem& system) {
+  if (!system.tree()) throw std::invalid_argument("the system's skeleton is not a tree");
+  return system.skeleton();
 }
 
 }  // namespace
 
-SystemConfiguration<Eigen::Dynamic>::SystemConfiguration(const MusculoskeletalSystem& arm)
-    : arm_(&arm),
-      places_(skeletonWithTree(arm)),
-      motion_(arm.tree()->newMotion<double>()),
-      energy_(*arm.tree()),
-      q_(arm.skeleton().defaultValues()),
+SystemConfiguration<Eigen::Dynamic>::SystemConfiguration(const MusculoskeletalSystem& system)
+    : system_(&system),
+      places_(skeletonWithTree(system)),
+      motion_(system.tree()->newMotion<double>()),
+      energy_(*system.tree()),
+      q_(system.skeleton().defaultValues()),
       still_(Vector::Zero(q_.size())) {
-  for (std::size_t i = 0; i < arm.numPaths(); ++i) {
-    work_.push_back(arm.treePath(i).newWork());
-    lengths_.push_back(arm.treePath(i).newLength(arm.skeleton().numCoordinates()));
+  for (std::size_t i = 0; i < system.numPaths(); ++i) {
+    work_.push_back(system.treePath(i).newWork());
+    lengths_.push_back(system.treePath(i).newLength(system.skeleton().numCoordinates()));
   }
 }
 
@@ -32,8 +32,8 @@ void SystemConfiguration<Eigen::Dynamic>::moveTo(const Vector& q) {
   moveSkeletonTo(q);
   for (std::size_t i = 0; i < lengths_.size(); ++i) {
     try {
-      arm_->treePath(i).evaluate(arm_->path(i).compiled(), q_, holds_ ? held_ : q_, motion_,
-                                 work_[i], lengths_[i]);
+      system_->treePath(i).evaluate(system_->path(i).compiled(), q_, holds_ ? held_ : q_, motion_,
+                                    work_[i], lengths_[i]);
     } catch (const std::domain_error&) {  // no taut string: an iteration sees a failed step
       lengths_[i].length = std::numeric_limits<double>::quiet_NaN();
     }
@@ -42,13 +42,13 @@ void SystemConfiguration<Eigen::Dynamic>::moveTo(const Vector& q) {
 
 void SystemConfiguration<Eigen::Dynamic>::moveSkeletonTo(const Vector& q) {
   q_ = q;
-  arm_->tree()->place(q_.data(), motion_);
+  system_->tree()->place(q_.data(), motion_);
   evaluated_ = nullptr;
 }
 
 void SystemConfiguration<Eigen::Dynamic>::shift(const Vector& d) {
   q_ += d;
-  arm_->tree()->place(q_.data(), motion_);
+  system_->tree()->place(q_.data(), motion_);
   evaluated_ = nullptr;
   for (LengthJet<Eigen::Dynamic>& path : lengths_) {
     const std::vector<int>& support = path.support;
@@ -84,7 +84,7 @@ Placement<double> SystemConfiguration<Eigen::Dynamic>::change(std::size_t segmen
                                                               int coordinate) const {
   const Placement<double> X = placement(segment);
   Placement<double> sum{Eigen::Matrix3d::Zero(), Eigen::Vector3d::Zero()};
-  const ArticulatedTree& tree = *arm_->tree();
+  const ArticulatedTree& tree = *system_->tree();
   for (int m = tree.mobilityOf(places_.segmentOf(segment)); m >= 0;) {
     const Mobility& mobility = tree.mobilities()[static_cast<std::size_t>(m)];
     if (mobility.coordinate == coordinate) {

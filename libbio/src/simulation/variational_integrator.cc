@@ -20,16 +20,16 @@ class VariationalRun {
   using Ends = typename Stepper::Ends;
   using Vector = typename Stepper::Vector;
 
-  VariationalRun(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+  VariationalRun(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                  const SystemState& start, const SimulationOptions& options, StepTape* tape)
-      : arm_(arm),
+      : system_(system),
         options_(options),
         tape_(tape),
-        stepper_(arm, options),
-        player_(arm, excitation, options.startTime),
-        configuration_(arm),
+        stepper_(system, options),
+        player_(system, excitation, options.startTime),
+        configuration_(system),
         search_(options.newtonTolerance),
-        recorder_(arm, numRows(options)),
+        recorder_(system, numRows(options)),
         activation_(start.activation),
         middle_(start.activation),
         keptActivation_(static_cast<std::size_t>(options.maxHalvings) + 1, start.activation) {
@@ -44,7 +44,7 @@ class VariationalRun {
     fibreVelocityBefore_ = fibreVelocity_;
     length_ = lengthBefore_ = options.step;
     next_ = now_;
-    if (!arm_.switches().empty()) sides_.emplace(arm_);
+    if (!system_.switches().empty()) sides_.emplace(system_);
     recorder_.add(options.startTime, now_.q, velocity_, activation_, now_.fibreLength, 0, 0, 0);
     if (tape_) tape_->begin(now_.q, now_.fibreLength, activation_, numRows(options_));
   }
@@ -164,7 +164,7 @@ class VariationalRun {
   /// Returns which switch it then ends on, or null.
   const PathSwitch* findSwitch(double t0, double t1, const Eigen::VectorXd& activationAtStart,
                                double& split) {
-    if (!search_.begin(arm_.switches(), now_.q, next_.q)) return nullptr;
+    if (!search_.begin(system_.switches(), now_.q, next_.q)) return nullptr;
     for (auto found = SwitchSearch::Found::again; found == SwitchSearch::Found::again;) {
       split = t0 + search_.fraction() * (t1 - t0);
       activation_ = activationAtStart;
@@ -204,8 +204,8 @@ class VariationalRun {
 
   /// q̇ = M⁻¹p at the end of the last step, at time t; of prescribed coordinates as given.
   const Vector& speed(double t) {
-    if (!arm_.skeleton().hasConstantInertia()) configuration_.moveSkeletonTo(now_.q);
-    if (arm_.prescribed().empty()) {
+    if (!system_.skeleton().hasConstantInertia()) configuration_.moveSkeletonTo(now_.q);
+    if (system_.prescribed().empty()) {
       factor_.compute(configuration_.massMatrix());
       speed_ = factor_.solve(now_.p);
       return speed_;
@@ -214,15 +214,15 @@ class VariationalRun {
     momentum_ = now_.p;
     speed_ = now_.p;
     options_.prescribed.place(t, now_.q, speed_);  // the values stay as they are
-    for (const int k : arm_.prescribed()) momentum_ -= massMatrix_.col(k) * speed_[k];
-    for (const int k : arm_.prescribed()) momentum_[k] = speed_[k];
-    decouple(arm_.prescribed(), massMatrix_);
+    for (const int k : system_.prescribed()) momentum_ -= massMatrix_.col(k) * speed_[k];
+    for (const int k : system_.prescribed()) momentum_[k] = speed_[k];
+    decouple(system_.prescribed(), massMatrix_);
     factor_.compute(massMatrix_);
     speed_ = factor_.solve(momentum_);
     return speed_;
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const SimulationOptions& options_;
   StepTape* tape_;
   Stepper stepper_;
@@ -250,11 +250,11 @@ class VariationalRun {
 
 }  // namespace
 
-Trajectory simulateVariational(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
-                               const SystemState& start, const SimulationOptions& options,
-                               StepTape* tape) {
-  return withCoordinates(arm.skeleton(), [&](auto N) {
-    return VariationalRun<decltype(N)::value>(arm, excitation, start, options, tape).run();
+Trajectory simulateVariational(const MusculoskeletalSystem& system,
+                               const ExcitationSignal& excitation, const SystemState& start,
+                               const SimulationOptions& options, StepTape* tape) {
+  return withCoordinates(system.skeleton(), [&](auto N) {
+    return VariationalRun<decltype(N)::value>(system, excitation, start, options, tape).run();
   });
 }
 

@@ -17,20 +17,20 @@ class VariationalStepper {
   using Vector = Eigen::Matrix<double, N, 1>;
   using Matrix = Eigen::Matrix<double, N, N>;
 
-  VariationalStepper(const MusculoskeletalSystem& arm, const SimulationOptions& options)
-      : arm_(arm),
+  VariationalStepper(const MusculoskeletalSystem& system, const SimulationOptions& options)
+      : system_(system),
         options_(options),
-        configuration_(arm),
-        others_(arm),
+        configuration_(system),
+        others_(system),
         symmetric_(options.integrator == Integrator::variational),
-        rate_(arm.numMuscles()),
-        pieces_(arm.numMuscles()),
-        inverse_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(arm.numMuscles()))),
+        rate_(system.numMuscles()),
+        pieces_(system.numMuscles()),
+        inverse_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.numMuscles()))),
         residual_(inverse_),
-        muscle_(Vector::Zero(countOf<N>(arm))),
+        muscle_(Vector::Zero(countOf<N>(system))),
         passive_(muscle_),
         external_(muscle_),
-        work_(countOf<N>(arm)) {}
+        work_(countOf<N>(system)) {}
 
   struct Ends {
     Vector q, p;
@@ -92,7 +92,7 @@ class VariationalStepper {
       L_q = -energy.V_q;
       dMv = energy.T_vv / h;
       dL_q = -energy.V_qq / 2;
-      if (!arm_.skeleton().hasConstantInertia()) {
+      if (!system_.skeleton().hasConstantInertia()) {
         L_q += energy.T_q;
         dMv += energy.T_vq / 2;
         dL_q += energy.T_vq.transpose() / h;
@@ -101,9 +101,9 @@ class VariationalStepper {
 
       // passive coordinate forces
       passive_.setZero();
-      tau_q.setZero(countOf<N>(arm_), countOf<N>(arm_));
-      tau_v.setZero(countOf<N>(arm_), countOf<N>(arm_));
-      arm_.coordinateForces().template add<N>(q_m, v, passive_, tau_q, tau_v);
+      tau_q.setZero(countOf<N>(system_), countOf<N>(system_));
+      tau_v.setZero(countOf<N>(system_), countOf<N>(system_));
+      system_.coordinateForces().template add<N>(q_m, v, passive_, tau_q, tau_v);
       if (others_.any()) {
         others_.add(middle, configuration_, v, passive_, tau_q, tau_v);
         external_ = applied_ + others_.load();
@@ -117,7 +117,7 @@ class VariationalStepper {
       R = Mv - h / 2 * L_q - share * (muscle_ + passive_ + external_) - begin.p;
       J = dMv - h / 2 * dL_q - share * dTau - eliminated;
       carried -= R;
-      for (const int k : arm_.prescribed()) {  // q' is given
+      for (const int k : system_.prescribed()) {  // q' is given
         J.row(k).setZero();
         J(k, k) = 1;
         carried[k] = 0;
@@ -128,7 +128,7 @@ class VariationalStepper {
         return result;
       }
 
-      // trust limits: a step of the arm or of a fibre that is too bold is shortened as a whole
+      // trust limits: a step of the system or of a fibre that is too bold is shortened as a whole
       double shorten = 1;
       double size = dq.cwiseAbs().maxCoeff();
       if (size > largestTurn) shorten = largestTurn / size;
@@ -163,12 +163,12 @@ class VariationalStepper {
   /// of a failed step.
   std::string describeFailure() const {
     if (failedPosture_.size() > 0) {
-      const std::string lost = describeLostPath(arm_, failedPosture_);
+      const std::string lost = describeLostPath(system_, failedPosture_);
       if (!lost.empty()) return lost;
     }
     std::string text = "last corrections: ";
     for (std::size_t i = 0; i < rate_.size(); ++i) {
-      text += fmt::format("{}{} {:.2g} m", i ? ", " : "", arm_.muscles()[i].name,
+      text += fmt::format("{}{} {:.2g} m", i ? ", " : "", system_.muscles()[i].name,
                           residual_[static_cast<Eigen::Index>(i)]);
     }
     return text;
@@ -191,13 +191,13 @@ class VariationalStepper {
                   const Moving& step, Matrix& dTau, Matrix& eliminated, Vector& carried) {
     const auto& [v, h, share] = step;
     muscle_.setZero();
-    eliminated.setZero(countOf<N>(arm_), countOf<N>(arm_));
-    carried.setZero(countOf<N>(arm_));
+    eliminated.setZero(countOf<N>(system_), countOf<N>(system_));
+    carried.setZero(countOf<N>(system_));
     for (std::size_t i = 0; i < rate_.size(); ++i) {
       const auto si = static_cast<Eigen::Index>(i);
       const LengthJet<N>& path = configuration_.length(i);
       const double l_m = (begin.fibreLength[si] + end.fibreLength[si]) / 2;
-      const SimulatedMuscle& muscle = arm_.muscles()[i].muscle;
+      const SimulatedMuscle& muscle = system_.muscles()[i].muscle;
       if (!muscle.hasFibreState()) {
         addRigid(i, activation[si], path, v, h, dTau);
         continue;
@@ -224,7 +224,7 @@ class VariationalStepper {
       const LengthJet<N>& path = configuration_.length(i);
       const double C_dq = -rate_[i].dV_dMuscleTendonLength / 2 * path.dL_dq.dot(dq);
       residual_[si] = -(residual_[si] + C_dq) * inverse_[si];
-      largest = std::max(largest, std::abs(residual_[si]) * arm_.muscles()[i].muscle.perFibre());
+      largest = std::max(largest, std::abs(residual_[si]) * system_.muscles()[i].muscle.perFibre());
     }
     return largest;
   }
@@ -266,7 +266,7 @@ class VariationalStepper {
   void addRigid(std::size_t i, double activation, const LengthJet<N>& path, const Vector& v,
                 double h, Matrix& dTau) {
     const muscles::RigidRate<double> r =
-        arm_.muscles()[i].muscle.rigidRate(activation, path.length, path.dL_dq.dot(v));
+        system_.muscles()[i].muscle.rigidRate(activation, path.length, path.dL_dq.dot(v));
     addAlong<N>(muscle_, -r.tendonForce, path);
     // ∂F over the end configuration
     auto&& F_q = work_.template vector<8>();
@@ -289,7 +289,7 @@ class VariationalStepper {
     }
   }
 
-  const MusculoskeletalSystem& arm_;
+  const MusculoskeletalSystem& system_;
   const SimulationOptions& options_;
   SystemConfiguration<N> configuration_;
   OtherForces<N> others_;

@@ -13,14 +13,15 @@ namespace {
 constexpr double leastCourse = 1e-3;
 constexpr double mostKnots = 10'000;
 
-void checkDeclaration(const LatentDeclaration& one) {
-  if (!(one.sd > 0 && std::isfinite(one.sd))) {
-    throw std::invalid_argument(
-        fmt::format("latent excitation of '{}': sd = {}, must be > 0", one.muscle, one.sd));
+void checkDeclaration(const LatentDeclaration& declaration) {
+  if (!(declaration.sd > 0 && std::isfinite(declaration.sd))) {
+    throw std::invalid_argument(fmt::format("latent excitation of '{}': sd = {}, must be > 0",
+                                            declaration.muscle, declaration.sd));
   }
-  if (!(one.spacing > 0 && std::isfinite(one.spacing))) {
-    throw std::invalid_argument(fmt::format(
-        "latent excitation of '{}': knots every {} s, must be > 0", one.muscle, one.spacing));
+  if (!(declaration.spacing > 0 && std::isfinite(declaration.spacing))) {
+    throw std::invalid_argument(
+        fmt::format("latent excitation of '{}': knots every {} s, must be > 0", declaration.muscle,
+                    declaration.spacing));
   }
 }
 
@@ -91,8 +92,9 @@ Eigen::RowVectorXd latentSlope(const Eigen::VectorXd& times, const Eigen::RowVec
 
 std::string latentHeader(const std::vector<LatentDeclaration>& declared) {
   std::string text;
-  for (const LatentDeclaration& one : declared) {
-    text += fmt::format("{}{} {} {}", text.empty() ? "" : "; ", one.muscle, one.sd, one.spacing);
+  for (const LatentDeclaration& declaration : declared) {
+    text += fmt::format("{}{} {} {}", text.empty() ? "" : "; ", declaration.muscle, declaration.sd,
+                        declaration.spacing);
   }
   return text;
 }
@@ -102,19 +104,19 @@ std::vector<LatentDeclaration> latentInHeader(const std::string& text) {
   std::istringstream all(text);
   for (std::string part; std::getline(all, part, ';');) {
     std::istringstream words(part);
-    LatentDeclaration one;
+    LatentDeclaration declaration;
     std::string rest;
-    if (!(words >> one.muscle >> one.sd >> one.spacing) || words >> rest) {
+    if (!(words >> declaration.muscle >> declaration.sd >> declaration.spacing) || words >> rest) {
       throw std::invalid_argument(fmt::format(
           "latent_excitation = '{}', must be MUSCLE SD KNOTS_S, several between semicolons", text));
     }
-    checkDeclaration(one);
+    checkDeclaration(declaration);
     for (const LatentDeclaration& other : declared) {
-      if (other.muscle != one.muscle) continue;
+      if (other.muscle != declaration.muscle) continue;
       throw std::invalid_argument(
-          fmt::format("latent_excitation: '{}' is given twice", one.muscle));
+          fmt::format("latent_excitation: '{}' is given twice", declaration.muscle));
     }
-    declared.push_back(std::move(one));
+    declared.push_back(std::move(declaration));
   }
   return declared;
 }

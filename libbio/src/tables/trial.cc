@@ -93,12 +93,13 @@ class TrialReader {
     } catch (const std::invalid_argument& error) {
       fail(fmt::format("header: {}", error.what()));
     }
-    for (const LatentDeclaration& one : trial_.latent) {
-      const bool isKnown = std::any_of(model_.muscles.begin(), model_.muscles.end(),
-                                       [&](const Muscle& m) { return m.name == one.muscle; });
+    for (const LatentDeclaration& declaration : trial_.latent) {
+      const bool isKnown =
+          std::any_of(model_.muscles.begin(), model_.muscles.end(),
+                      [&](const Muscle& m) { return m.name == declaration.muscle; });
       if (isKnown) continue;
-      fail(fmt::format("header: latent_excitation: the model has no muscle '{}'{}", one.muscle,
-                       meantInstead(one.muscle, names())));
+      fail(fmt::format("header: latent_excitation: the model has no muscle '{}'{}",
+                       declaration.muscle, meantInstead(declaration.muscle, names())));
     }
   }
 
@@ -178,7 +179,7 @@ class TrialReader {
   std::vector<MeasuredChannel>::iterator find(const std::string& coordinate) {
     return std::find_if(
         trial_.measured.begin(), trial_.measured.end(),
-        [&](const MeasuredChannel& one) { return one.what == ofCoordinate(coordinate); });
+        [&](const MeasuredChannel& channel) { return channel.what == ofCoordinate(coordinate); });
   }
 
   // A held coordinate may be measured, where it is held. A joint that a dynamometer holds gives way
@@ -247,7 +248,7 @@ class TrialReader {
     for (const CoordinateActuator& actuator : model_.actuators) {
       const bool isDriven =
           std::any_of(trial_.applied.begin(), trial_.applied.end(),
-                      [&](const AppliedForce& one) { return one.actuator == actuator.name; });
+                      [&](const AppliedForce& force) { return force.actuator == actuator.name; });
       if (actuator.enabled && !isDriven) idle.push_back(actuator.name);
     }
     if (idle.empty()) return;
@@ -324,8 +325,9 @@ Trial trialFrom(const Table& table, const std::string& name, const Model& model,
 }
 
 const MeasuredChannel* Trial::measurementOf(const Observable& what) const {
-  const auto at = std::find_if(measured.begin(), measured.end(),
-                               [&](const MeasuredChannel& one) { return one.what == what; });
+  const auto at =
+      std::find_if(measured.begin(), measured.end(),
+                   [&](const MeasuredChannel& channel) { return channel.what == what; });
   return at == measured.end() ? nullptr : &*at;
 }
 

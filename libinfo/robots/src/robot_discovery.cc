@@ -80,7 +80,7 @@ DiscoveryResult discover(const DiscoveryRequest& request) {
   discover::TrialSearch asked{request.trials.size(), request.numHeldOut, request.step,
                               problem.step,          kShortestStep,      request.search};
   if (!problem.sds.empty())
-    asked.options.outputSd = discover::Whitening(
+    asked.options.sds = discover::Whitening(
         Eigen::VectorXd::Map(problem.sds.data(), static_cast<Eigen::Index>(problem.sds.size())));
   DiscoveryResult result;
   result.found =

@@ -115,14 +115,14 @@ RobotProblem::RobotProblem(Model model, std::vector<Trial> trials, DisagreementO
   }
 }
 
-Response RobotProblem::simulate(const OfTrial& one, const VectorXd& values, const VectorXd& latent,
-                                const std::vector<std::size_t>& shared, bool derivatives,
-                                bool latentToo, double stepFactor) const {
+Response RobotProblem::simulate(const OfTrial& trial, const VectorXd& values,
+                                const VectorXd& latent, const std::vector<std::size_t>& shared,
+                                bool derivatives, bool latentToo, double stepFactor) const {
   const VectorXd numbers = values.head(static_cast<Index>(model_.quantities.size()));
   const VectorXd start =
-      values.segment(static_cast<Index>(one.start), static_cast<Index>(model_.starts.size()));
-  return model_.simulate({one.trial, one.samples, one.nodes, options_.step * stepFactor, numbers,
-                          start, latent, shared, derivatives, latentToo});
+      values.segment(static_cast<Index>(trial.start), static_cast<Index>(model_.starts.size()));
+  return model_.simulate({trial.trial, trial.samples, trial.nodes, options_.step * stepFactor,
+                          numbers, start, latent, shared, derivatives, latentToo});
 }
 
 RobotProblem::Prediction RobotProblem::predict(int trial, const VectorXd& values,

@@ -61,13 +61,14 @@ struct Layout {
 
   // d(x, vec ψ) of all by (x, inputs), from one candidate's.
   template <class Derivatives>
-  void place(const Derivatives& one, Index s, Derivatives& all) const {
-    const Index inputs = one.x.cols() - n;
-    all.x.block(s * n, s * n, n, n) = one.x.leftCols(n);
-    all.x.block(s * n, count * n, n, inputs) = one.x.rightCols(inputs);
+  void place(const Derivatives& derivatives, Index s, Derivatives& all) const {
+    const Index inputs = derivatives.x.cols() - n;
+    all.x.block(s * n, s * n, n, n) = derivatives.x.leftCols(n);
+    all.x.block(s * n, count * n, n, inputs) = derivatives.x.rightCols(inputs);
     for (Index j = 0; j < p; ++j) {
-      all.psi.block(psiRow(s, j), s * n, n, n) = one.psi.block(j * n, 0, n, n);
-      all.psi.block(psiRow(s, j), count * n, n, inputs) = one.psi.block(j * n, n, n, inputs);
+      all.psi.block(psiRow(s, j), s * n, n, n) = derivatives.psi.block(j * n, 0, n, n);
+      all.psi.block(psiRow(s, j), count * n, n, inputs) =
+          derivatives.psi.block(j * n, n, n, inputs);
     }
   }
   template <class Derivatives>
@@ -81,10 +82,10 @@ template <class Extended>
 Layout layoutOf(const std::vector<Extended>& candidates) {
   if (candidates.empty()) throw std::invalid_argument("candidates: 0 of them, must be ≥ 1");
   const Dimensions d = candidates.front().dimensions;
-  for (const Extended& one : candidates)
-    if (one.dimensions.state != d.state || one.dimensions.input != d.input ||
-        one.dimensions.parameter != d.parameter || one.dimensions.output != d.output ||
-        one.candidates != 1)
+  for (const Extended& extended : candidates)
+    if (extended.dimensions.state != d.state || extended.dimensions.input != d.input ||
+        extended.dimensions.parameter != d.parameter || extended.dimensions.output != d.output ||
+        extended.candidates != 1)
       throw std::invalid_argument(
           "candidates: sizes differ or one is a stack itself, must be the same system at several "
           "values of its parameters");

@@ -86,16 +86,16 @@ class Work {
     AdequacyOptions& test = test_;
     test.level = options_.level;
     test.evidence = options_.remainder;
-    if (options_.outputSd) {
-      verdict_.outputSd = *options_.outputSd;
+    if (options_.sds) {
+      verdict_.sds = *options_.sds;
     } else {
       const OutputSd& found = verdict_.noise.sd;
-      verdict_.outputSd = found.value;
+      verdict_.sds = found.value;
       verdict_.sdEstimated = true;
       test.sdError = found.relativeError;
     }
     stage_ = Stage::calibrate;
-    search_.emplace(data_, trials_, options_, verdict_.outputSd, [this](const std::string& doing) {
+    search_.emplace(data_, trials_, options_, verdict_.sds, [this](const std::string& doing) {
       report(stage_, fraction_ + 0.5 * (0.9 - fraction_) * 0.05, doing);
     });
     if (known != nullptr)
@@ -117,7 +117,7 @@ class Work {
       const VectorXd refined = data_.refinedOutputs(t, values);
       if (refined.size() == 0) continue;
       VectorXd moved = refined - data_.outputs(t, values, {});
-      verdict_.outputSd.whiten(data_.outputOfSample(t), moved);
+      verdict_.sds.whiten(data_.outputOfSample(t), moved);
       const double change = moved.cwiseAbs().maxCoeff();
       if (!(change > verdict_.numericalError)) continue;
       verdict_.numericalError = change;
@@ -211,7 +211,7 @@ class Work {
         before.fit.noise.latent > 0 ? before.fit : refit(before, options_.latentScale);
     if (options_.symbolic && (!chosen_.empty() || decision.finding == Finding::unknown)) {
       verdict_.nonparametric = raceNonparametric(
-          *search_, chosen_, smoothing, options_, verdict_.outputSd,
+          *search_, chosen_, smoothing, options_, verdict_.sds,
           [this](const std::string& doing) { report(stage_, fraction_, doing); },
           nonparametricFits_);
       judgement.nonparametricWins = verdict_.nonparametric && verdict_.nonparametric->wins;
@@ -273,7 +273,7 @@ class Work {
   // The formula is compared last.
   Options optionsOfFormula() const {
     Options options = options_;
-    options.outputSd = verdict_.outputSd;
+    options.sds = verdict_.sds;
     if (options_.progress)
       options.progress = [this, from = fraction_](const Progress& of) {
         return options_.progress({Stage::decide, from + of.fraction * (0.97 - from), of.doing});
@@ -283,7 +283,7 @@ class Work {
 
   Fit refit(const Entry& entry, double size) const {
     const Fit& old = entry.fit;
-    const Noise noise{verdict_.outputSd, size, options_.latentTime};
+    const Noise noise{verdict_.sds, size, options_.latentTime};
     const Likelihood& likelihood = search_->likelihood();
     if (auto fit = likelihood.tryFit(old.hypothesis, noise, old.values)) return std::move(*fit);
     // the simulation follows the data only because of its latent force
@@ -293,9 +293,9 @@ class Work {
 
   void gaps(const Entry& before, const Entry& after, Judgement& judgement) {
     ExcessError& gap = verdict_.gap;
-    gap.floor = verdict_.outputSd.sd(0);
-    gap.range = rangeOf(data_, trials_, verdict_.outputSd);
-    const Noise still{verdict_.outputSd, 0, options_.latentTime};
+    gap.floor = verdict_.sds.sd(0);
+    gap.range = rangeOf(data_, trials_, verdict_.sds);
+    const Noise still{verdict_.sds, 0, options_.latentTime};
     const Likelihood& likelihood = search_->likelihood();
     const auto nominal = [&](const Likelihood& l) {
       const auto fit = l.tryFit(startsOnly(data_, l.trials()), still, nominalValues(data_));
@@ -342,7 +342,7 @@ class Work {
         !chosen_.empty() && with.score < without.score - 3 && with.error > 0.95 * without.error;
     if (!chosen_.empty() && (judgement.strangeAfter || judgement.heldOutWorse)) {
       verdict_.replication =
-          replicate(data_, options_, verdict_.outputSd, after,
+          replicate(data_, options_, verdict_.sds, after,
                     [this](const std::string& doing) { report(stage_, fraction_, doing); });
       judgement.replicated = verdict_.replication && verdict_.replication->replicated;
     }
@@ -384,8 +384,8 @@ Verdict run(const DiscoveryProblem& data, const Options& options, WarmStart* dra
   requireMemory(data, trials, availableMemory());
   RecordedNoise noise;
   if (options.judgeSamples)
-    noise = recordedNoise(data, trials, options.outputSd);
-  else if (!options.outputSd)
+    noise = recordedNoise(data, trials, options.sds);
+  else if (!options.sds)
     noise.sd = estimateOutputSd(data, trials);
   if (noise.usesAll()) return Work(data, options, std::move(noise)).run(draft);
   const SelectedSamples selected(data, noise.kept);

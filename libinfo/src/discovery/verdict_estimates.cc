@@ -34,7 +34,7 @@ VectorXd predictedSd(const DiscoveryProblem& data, const Verdict& verdict, int t
   }
   const auto at = data.predict(trial, verdict.values, {}, amplitudes, false);
   const VectorXd spread = (at.gamma * sd.asDiagonal()).rowwise().squaredNorm();
-  const VectorXd noise = verdict.outputSd.bySample(data.outputOfSample(trial), spread.size());
+  const VectorXd noise = verdict.sds.bySample(data.outputOfSample(trial), spread.size());
   return (spread + noise.cwiseAbs2()).cwiseSqrt();
 }
 

@@ -144,9 +144,10 @@ class VerdictSentence {
   std::string atBounds() const {
     std::string quantities;
     for (const NamedEffect& e : verdict_.effects)
-      for (const Estimate& one : e.estimates)
-        if (one.atBound)
-          quantities += (quantities.empty() ? "" : ", ") + data_.quantities()[one.quantity].name;
+      for (const Estimate& estimate : e.estimates)
+        if (estimate.atBound)
+          quantities +=
+              (quantities.empty() ? "" : ", ") + data_.quantities()[estimate.quantity].name;
     return quantities.empty() ? "" : " (at its bound: " + quantities + ")";
   }
 

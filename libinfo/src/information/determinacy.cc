@@ -97,30 +97,31 @@ std::vector<Determinacy> determinacy(const MatrixXd& information,
         loosest = j;
       }
     }
-    Determinacy one{1 / std::sqrt(information(i, i)), std::sqrt(variance) * known[i], false, ""};
-    if (!(information(i, i) > 0)) one.boundAlone = one.bound = infinity;
+    Determinacy determinacy{1 / std::sqrt(information(i, i)), std::sqrt(variance) * known[i], false,
+                            ""};
+    if (!(information(i, i) > 0)) determinacy.boundAlone = determinacy.bound = infinity;
     const double enough = known[i] / std::sqrt(3.0);
-    one.identifiable = one.bound <= enough;
+    determinacy.identifiable = determinacy.bound <= enough;
     const std::string others = partners(v.col(loosest), i, parameters);
-    if (one.identifiable) {
+    if (determinacy.identifiable) {
       // nothing to explain
-    } else if (std::isinf(one.boundAlone)) {
-      one.why = fmt::format("{} has no effect on {}", parameter.name, outcome);
-    } else if (one.boundAlone > enough || others.empty()) {
-      one.why = fmt::format(
+    } else if (std::isinf(determinacy.boundAlone)) {
+      determinacy.why = fmt::format("{} has no effect on {}", parameter.name, outcome);
+    } else if (determinacy.boundAlone > enough || others.empty()) {
+      determinacy.why = fmt::format(
           "{} has too little effect on {}: even with all other parameters known, the data alone "
           "would determine it to ±{} only, and its prior is ±{}",
-          parameter.name, outcome, quantity(one.boundAlone, parameter),
+          parameter.name, outcome, quantity(determinacy.boundAlone, parameter),
           quantity(known[i], parameter));
     } else {
       const double lambda = std::max(0.0, eigen.values[loosest]);
-      one.why = fmt::format(
+      determinacy.why = fmt::format(
           "{} is confounded with {}: {} together change {} by {:.2g} standard deviations in all; "
           "with the others known it would be determined to ±{}",
           parameter.name, others, moves(v.col(loosest), i, parameters, known), outcome,
-          std::sqrt(lambda) / std::abs(v(i, loosest)), quantity(one.boundAlone, parameter));
+          std::sqrt(lambda) / std::abs(v(i, loosest)), quantity(determinacy.boundAlone, parameter));
     }
-    result.push_back(std::move(one));
+    result.push_back(std::move(determinacy));
   }
   return result;
 }

@@ -19,11 +19,11 @@ std::string suggested(const std::string& model, const std::vector<std::string>& 
 }
 
 TEST(SuggestedExperiments, PutAMassWhereTheLimbEnds) {
-  const std::string arm = suggested("elbow8", {"elbow_flexion"});
-  EXPECT_THAT(arm, testing::HasSubstr("with a known mass, e.g. 1 kg, in the hand: the effect of "
-                                      "gravity grows with it, a force on the hand does not."));
-  EXPECT_THAT(arm, testing::HasSubstr("and with a known mass in the hand: these data cannot"));
-  EXPECT_THAT(arm, testing::HasSubstr("(column elbow_flexion.torque)"));
+  const std::string system = suggested("elbow8", {"elbow_flexion"});
+  EXPECT_THAT(system, testing::HasSubstr("with a known mass, e.g. 1 kg, in the hand: the effect of "
+                                         "gravity grows with it, a force on the hand does not."));
+  EXPECT_THAT(system, testing::HasSubstr("and with a known mass in the hand: these data cannot"));
+  EXPECT_THAT(system, testing::HasSubstr("(column elbow_flexion.torque)"));
   EXPECT_THAT(suggested("elbow8", {"elbow_flexion", "shoulder_elv"}),
               testing::HasSubstr("(column elbow_flexion.torque or shoulder_elv.torque)"));
   const std::string leg = suggested("ankle_ta", {"ankle_angle"});

@@ -42,14 +42,14 @@ struct Filmed {
       : model(std::move(file)), coordinates(std::move(free)), parameter(std::move(changed)) {
     const bio::Model made = bio::readOsim(model);
     const bio::SystemOptions options{{coordinates, {}}, {}, {}};
-    const bio::MusculoskeletalSystem arm(made, options);
+    const bio::MusculoskeletalSystem system(made, options);
     for (const bio::Marker& marker : made.markers) {
       markers.push_back(marker.body + "." + marker.name);
     }
     points = std::move(names);
     excitations.columns = {"time"};
-    for (std::size_t m = 0; m < arm.numMuscles(); ++m) {
-      excitations.columns.push_back(arm.muscles()[m].name);
+    for (std::size_t m = 0; m < system.numMuscles(); ++m) {
+      excitations.columns.push_back(system.muscles()[m].name);
     }
     excitations.values.resize(frames, static_cast<Eigen::Index>(excitations.columns.size()));
     for (Eigen::Index k = 0; k < frames; ++k) {
@@ -60,7 +60,8 @@ struct Filmed {
       }
     }
     const bio::Trial trial = bio::trialFrom(excitations, "made", made, {});
-    const bio::ParameterCatalogue catalogue(made, arm, {bio::startCoordinates(trial, arm, {}), {}});
+    const bio::ParameterCatalogue catalogue(made, system,
+                                            {bio::startCoordinates(trial, system, {}), {}});
     const auto selection = catalogue.select({parameter});
     truth = factor * catalogue.values(selection)[0];
     std::vector<bio::ObservedSeries> series;
@@ -71,8 +72,8 @@ struct Filmed {
     }
     bio::SimulationOptions simulation;
     simulation.duration = 1;
-    const bio::TrialPredictor predictor(catalogue, options, bio::excitationOf(trial, arm), series,
-                                        selection, simulation);
+    const bio::TrialPredictor predictor(catalogue, options, bio::excitationOf(trial, system),
+                                        series, selection, simulation);
     seen = predictor.outputs(Eigen::VectorXd::Constant(1, truth)).reshaped(frames, series.size());
   }
 

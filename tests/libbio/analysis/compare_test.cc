@@ -23,18 +23,18 @@ using support::degree;
 
 /// The shipped elbow lifting for a second, excitations every 10 ms.
 struct Lift {
-  MusculoskeletalSystem arm{fixtures::elbowModel(), {{{"elbow_flexion"}, {}}, {}, {}}};
+  MusculoskeletalSystem system{fixtures::elbowModel(), {{{"elbow_flexion"}, {}}, {}, {}}};
   ExcitationSignal excitation = signal();
-  SystemState start = initialState(arm, Eigen::VectorXd::Constant(1, 0.7), excitation, 0);
+  SystemState start = initialState(system, Eigen::VectorXd::Constant(1, 0.7), excitation, 0);
 
   ExcitationSignal signal() const {
     std::vector<double> times;
     for (int k = 0; k <= 100; ++k) times.push_back(0.01 * k);
-    Eigen::MatrixXd u(101, static_cast<Eigen::Index>(arm.numMuscles()));
+    Eigen::MatrixXd u(101, static_cast<Eigen::Index>(system.numMuscles()));
     for (Eigen::Index k = 0; k < u.rows(); ++k) {
       for (Eigen::Index i = 0; i < u.cols(); ++i) {
         const double wave = std::sin(std::numbers::pi * 0.01 * static_cast<double>(k));
-        const bool flexor = arm.muscles()[static_cast<std::size_t>(i)].name.starts_with("B");
+        const bool flexor = system.muscles()[static_cast<std::size_t>(i)].name.starts_with("B");
         u(k, i) = 0.03 + (flexor ? 0.2 : 0.05) * wave * wave;
       }
     }
@@ -61,7 +61,7 @@ const CompareCell& cellOf(const Comparison& comparison, Integrator integrator, d
 const Comparison& comparison() {
   static const Comparison result = [] {
     const Lift lift;
-    return compareIntegrators(lift.arm, lift.excitation, lift.start, quickComparison());
+    return compareIntegrators(lift.system, lift.excitation, lift.start, quickComparison());
   }();
   return result;
 }
@@ -91,15 +91,15 @@ TEST(Compare, ErrorsAndCostsAreThoseOfTheRun) {
   SimulationOptions alone;
   alone.duration = 1;
   alone.step = 0.01;
-  const Trajectory motion = simulate(lift.arm, lift.excitation, lift.start, alone);
+  const Trajectory motion = simulate(lift.system, lift.excitation, lift.start, alone);
   ASSERT_EQ(cell.outcome, Outcome::completed);
   EXPECT_TRUE(std::isnan(cell.failedAt));
-  EXPECT_EQ(cell.energyError, energyError(lift.arm, motion));
+  EXPECT_EQ(cell.energyError, energyError(lift.system, motion));
   EXPECT_EQ(cell.newtonPerStep, static_cast<double>(motion.newtonIterations) / 100);
   EXPECT_GT(cell.wallSeconds, 0);
   // a second way to the error: CVODE with its output at the rows themselves
   alone.integrator = Integrator::cvode;
-  const Trajectory reference = simulate(lift.arm, lift.excitation, lift.start, alone);
+  const Trajectory reference = simulate(lift.system, lift.excitation, lift.start, alone);
   const Eigen::RowVectorXd difference = motion.q.row(0) - reference.q.row(0);
   const double rms = std::sqrt(difference.squaredNorm() / static_cast<double>(difference.size()));
   EXPECT_NEAR(cell.error.rms, rms, 1e-4 * rms);
@@ -146,7 +146,7 @@ TEST(Compare, TheLimitIsWhereTheAnswerChanges) {
     alone.integrator = Integrator::variationalLeft;
     alone.duration = 1;
     alone.step = step;
-    return sd(lift.arm, simulate(lift.arm, lift.excitation, lift.start, alone),
+    return sd(lift.system, simulate(lift.system, lift.excitation, lift.start, alone),
               comparison().reference.motion)
         .rms;
   };
@@ -186,13 +186,13 @@ TEST(Compare, DeviationOfAShiftedMotionIsTheShift) {
   Trajectory shifted = reference;
   shifted.q.array() += 0.1;
   shifted.q(0, 200) += 0.2;
-  const Deviation result = sd(lift.arm, shifted, reference);
+  const Deviation result = sd(lift.system, shifted, reference);
   const auto n = static_cast<double>(reference.time.size());
   EXPECT_NEAR(result.rms, std::sqrt(((n - 1) * 0.01 + 0.09) / n), 1e-12);
   EXPECT_NEAR(result.largest, 0.3, 1e-12);
   EXPECT_EQ(result.largestAt, reference.time[200]);
   shifted.time.assign(shifted.time.size(), 5.0);
-  EXPECT_THROW(sd(lift.arm, shifted, reference), std::invalid_argument);
+  EXPECT_THROW(sd(lift.system, shifted, reference), std::invalid_argument);
 }
 
 TEST(Compare, BrokenRulesAreNamed) {
@@ -201,7 +201,7 @@ TEST(Compare, BrokenRulesAreNamed) {
     CompareOptions options = quickComparison();
     change(options);
     try {
-      compareIntegrators(lift.arm, lift.excitation, lift.start, options);
+      compareIntegrators(lift.system, lift.excitation, lift.start, options);
       ADD_FAILURE() << message;
     } catch (const std::invalid_argument& error) {
       EXPECT_THAT(error.what(), HasSubstr(message));
@@ -264,8 +264,8 @@ TEST(CoordinateCurve, DiffersFromAMotionByWhatIsAddedToIt) {
     curve.value.push_back(motion.q(0, static_cast<Eigen::Index>(k)) - 0.05);
   }
   curve.value[3] = std::nan("");
-  EXPECT_NEAR(rmsDifference(lift.arm, curve, motion, "elbow_flexion"), 0.05, 1e-12);
-  EXPECT_THROW(rmsDifference(lift.arm, curve, motion, "knee"), std::invalid_argument);
+  EXPECT_NEAR(rmsDifference(lift.system, curve, motion, "elbow_flexion"), 0.05, 1e-12);
+  EXPECT_THROW(rmsDifference(lift.system, curve, motion, "knee"), std::invalid_argument);
 }
 
 }  // namespace

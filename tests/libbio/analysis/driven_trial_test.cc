@@ -13,14 +13,14 @@ using Eigen::VectorXd;
 TEST(DrivenTrial, KeepsTheTorqueFromOutsideAndWhatIsKnown) {
   const std::string root = FISHERHILL_SOURCE_DIR;
   const bio::Model model = bio::readOsim(root + "/models/elbow8.osim");
-  const bio::MusculoskeletalSystem arm(model, {{{"elbow_flexion"}, {}}, {}, {}});
+  const bio::MusculoskeletalSystem system(model, {{{"elbow_flexion"}, {}}, {}, {}});
   bio::Trial trial = bio::readTrial(root + "/emg_data/curl_slow.sto", model);
   const VectorXd torque = (3 * trial.times).array().sin();
   trial.applied = {{"elbow_flexion", torque}};
   trial.known = {1.25, -0.5};
   bio::EmgMapping mapping;
   mapping.delay = 0.013;
-  const bio::Table table = bio::drivenTable(trial, arm, mapping);
+  const bio::Table table = bio::drivenTable(trial, system, mapping);
   const bio::Trial driven =
       bio::trialFrom(table, "driven", model, {.experimentalConditions = true});
   EXPECT_EQ(driven.known.massInHand, 1.25);

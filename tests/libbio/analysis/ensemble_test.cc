@@ -59,7 +59,8 @@ TEST(SystemBatch, RunsAreThoseOfArmsCompiledFromNothing) {
       const Eigen::ArrayXd change = (motion.q - nominal.q).row(0).transpose();
       EXPECT_NEAR(run.rmsFromNominal, std::sqrt(change.square().mean()), 1e-9);
       EXPECT_NEAR(run.rmsError,
-                  compareWithMeasured(elbow.arm, motion, elbow.trial.measured.front()).rms, 1e-9);
+                  compareWithMeasured(elbow.system, motion, elbow.trial.measured.front()).rms,
+                  1e-9);
     }
   }
 }

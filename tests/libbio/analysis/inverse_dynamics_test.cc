@@ -98,7 +98,7 @@ struct Pushed {
     return o;
   }
   Trajectory moved(double step) const {
-    return simulate(c.arm, c.excitation, c.start, options(step));
+    return simulate(c.system, c.excitation, c.start, options(step));
   }
   Trajectory kept(const Trajectory& motion, SimulationOptions o) const {
     return inverseDynamics({c.model, c.options}, c.excitation, motion.time, motion.q, std::move(o));

@@ -18,7 +18,7 @@ using fixtures::extensor;
 
 /// The arm of path_test.cc with one extensor over an ellipsoid, and the flexion free.
 struct EllipsoidArm {
-  Model model = fixtures::arm();
+  Model model = fixtures::system();
   Skeleton skeleton;
 
   explicit EllipsoidArm(const Eigen::Vector3d& semiAxes)
@@ -101,8 +101,8 @@ TEST(OpenSimPaths, OverALyingEllipsoidAreLonger) {
              lengths.along(0).length;
     };
     EXPECT_NEAR(one.length, difference(one.lengthAt), 1e-9);
-    const double slope = (difference(one.armAt + 1e-4) - difference(one.armAt - 1e-4)) / 2e-4;
-    EXPECT_NEAR(one.arm, -slope, 1e-4);
+    const double slope = (difference(one.systemAt + 1e-4) - difference(one.systemAt - 1e-4)) / 2e-4;
+    EXPECT_NEAR(one.system, -slope, 1e-4);
     EXPECT_THAT(describe(one), testing::HasSubstr(one.muscle + " over TRI differs from the taut"));
   }
 }

@@ -26,7 +26,7 @@ TEST(TrialBeginning, IsWhatWasGivenElseTheModelsElseWhatWasMeasured) {
   Fitted f;
   const double first = f.trial.measured[0].values[0];
   const auto begin = [&](const std::map<std::string, double>& given = {}) {
-    return beginningOf(f.trial, f.model, f.elbow.arm, given);
+    return beginningOf(f.trial, f.model, f.elbow.system, given);
   };
   EXPECT_EQ(begin().from, From::model);
   EXPECT_EQ(begin().point.q[0], 0.6);
@@ -59,8 +59,8 @@ TEST(TrialReplay, StartsWithTheSpeedOfItsBeginning) {
   const Fitted f;
   SimulationOptions options;
   options.step = 0.001;
-  const TrialReplay replay =
-      replayTrial(f.elbow.arm, f.trial, options, beginningOf(f.trial, f.model, f.elbow.arm, {}));
+  const TrialReplay replay = replayTrial(f.elbow.system, f.trial, options,
+                                         beginningOf(f.trial, f.model, f.elbow.system, {}));
   EXPECT_EQ(replay.motion.q(0, 0), 0.6);
   EXPECT_EQ(replay.motion.qDot(0, 0), -0.3);
   EXPECT_NEAR((replay.motion.q(0, 1) - 0.6) / 0.001, -0.3, 0.02);

@@ -20,7 +20,7 @@ struct Study : ShippedElbow {
     SimulationOptions simulation;
     simulation.step = 0.01;
     trials.push_back(
-        studiedTrial(trial, model, arm, {startCoordinates(trial, arm, {}), {}}, simulation));
+        studiedTrial(trial, model, system, {startCoordinates(trial, system, {}), {}}, simulation));
     question.selection = trials[0].catalogue.select({"TRI.radius", "hand.mass"});
   }
 };
@@ -39,7 +39,7 @@ std::string messageOf(const Call& call) {
 TEST(SensitivityStudy, TheCoordinateIsAChannelLikeAnyOther) {
   Study study;
   const LocalSensitivity alone = localSensitivity(study.trials, study.question);
-  study.question.observed = observedChannels({{"elbow_flexion", 0.01}}, study.model, study.arm);
+  study.question.observed = observedChannels({{"elbow_flexion", 0.01}}, study.model, study.system);
   const LocalSensitivity named = localSensitivity(study.trials, study.question);
   EXPECT_TRUE(alone.trials[0].gamma == named.trials[0].gamma);
   const Eigen::MatrixXd difference = alone.information.fisher - named.information.fisher;
@@ -52,7 +52,7 @@ TEST(SensitivityStudy, TheCoordinateIsAChannelLikeAnyOther) {
 TEST(SensitivityStudy, InformationOfChannelsAddsUp) {
   Study study;
   const auto fisherOf = [&](const std::vector<std::pair<std::string, double>>& channels) {
-    study.question.observed = observedChannels(channels, study.model, study.arm);
+    study.question.observed = observedChannels(channels, study.model, study.system);
     return localSensitivity(study.trials, study.question).information.fisher;
   };
   const Eigen::MatrixXd both = fisherOf({{"elbow_flexion.speed", 0.1}, {"BRA.tendon_force", 5}});
@@ -66,10 +66,11 @@ TEST(SensitivityStudy, WhatAFurtherChannelAddsIsThereWhenItIsObserved) {
   Study study;
   const LocalSensitivity now = localSensitivity(study.trials, study.question);
   const std::vector<ChannelGain> gains =
-      furtherGains(study.trials, study.arm, study.question, now.information);
-  const std::size_t channels = furtherChannels(study.arm, study.question).size();
+      furtherGains(study.trials, study.system, study.question, now.information);
+  const std::size_t channels = furtherChannels(study.system, study.question).size();
   ASSERT_EQ(gains.size(), channels);
-  EXPECT_EQ(channels, usualChannels(study.arm).size() - 1);  // the coordinate is measured already
+  EXPECT_EQ(channels,
+            usualChannels(study.system).size() - 1);  // the coordinate is measured already
   for (const ChannelGain& gain : {gains.front(), gains[5]}) {
     EXPECT_NE(nameOf(gain.channel.what), "elbow_flexion");
     SensitivityQuestion then = study.question;
@@ -140,11 +141,11 @@ TEST(SensitivityStudy, GlobalSensitivityIsInTheUnitAskedFor) {
 TEST(SensitivityStudy, SaysWhatIsWrong) {
   Study study;
   EXPECT_THAT(messageOf([&] {
-                observedChannels({{"BRA.length", 1}}, study.model, study.arm);
+                observedChannels({{"BRA.length", 1}}, study.model, study.system);
               }),
               HasSubstr("observe: 'BRA.length' is nothing that can be measured"));
   EXPECT_THAT(messageOf([&] {
-                observedChannels({{"elbow_flexion", NAN}}, study.model, study.arm);
+                observedChannels({{"elbow_flexion", NAN}}, study.model, study.system);
               }),
               HasSubstr("observe: noise of 'elbow_flexion' = nan, must be > 0"));
   EXPECT_THAT(messageOf([&] { (void)localSensitivity({}, study.question); }),

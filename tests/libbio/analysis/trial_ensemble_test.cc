@@ -15,8 +15,8 @@ using support::throwsSaying;
 
 struct DrawnElbow {
   explicit DrawnElbow(const TrialEnsembleOptions& options, Trial trial = elbow().trial)
-      : ensemble(elbow().model, elbow().arm, ShippedElbow::options(), trial,
-                 beginningOf(trial, elbow().model, elbow().arm, {}).point, options) {}
+      : ensemble(elbow().model, elbow().system, ShippedElbow::options(), trial,
+                 beginningOf(trial, elbow().model, elbow().system, {}).point, options) {}
   static const ShippedElbow& elbow() {
     static const ShippedElbow one;
     return one;
@@ -50,10 +50,10 @@ TEST(TrialEnsemble, RunsAreReplaysOfTheModelWithTheDrawnParameters) {
   const Eigen::VectorXd theta = drawn.ensemble.draw(1, 5);
   const EnsembleRun run = drawn.ensemble.run(std::span(&theta, 1)).front();
   Model model = elbow.catalogue.at({elbow.catalogue.find("hand.mass")}, theta).model;
-  const MusculoskeletalSystem arm(model, ShippedElbow::options());
+  const MusculoskeletalSystem system(model, ShippedElbow::options());
   SimulationOptions options;
   const TrialReplay replay =
-      replayTrial(arm, elbow.trial, options, beginningOf(elbow.trial, model, arm, {}));
+      replayTrial(system, elbow.trial, options, beginningOf(elbow.trial, model, system, {}));
   EXPECT_NEAR(run.last, replay.motion.q(0, replay.motion.q.cols() - 1), 1e-9);
   EXPECT_NEAR(run.rmsError, replay.errors.front().second.rms, 1e-9);
   EXPECT_EQ(drawn.ensemble.course().back(), elbow.trial.times[0] + elbow.trial.duration());

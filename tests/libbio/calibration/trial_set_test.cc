@@ -145,15 +145,15 @@ TEST(TrialSet, MeasuresErrorsAsReplayDoes) {
   const TrialSet trials = set({"hand.mass"}, {trial});
   const Eigen::MatrixXd y =
       trials.predictor().outputs(Eigen::VectorXd::Constant(1, trials.parameters()[0].start));
-  const ExcitationSignal signal = excitationOf(trial, subject().arm);
+  const ExcitationSignal signal = excitationOf(trial, subject().system);
   SimulationOptions simulation;
   simulation.duration = 1.0;
   simulation.newtonTolerance = 1e-12;
-  const Trajectory motion =
-      simulate(subject().arm, signal,
-               initialState(subject().arm, startCoordinates(trial, subject().arm, {}), signal, 0.0),
-               simulation);
-  const double rms = compareWithMeasured(subject().arm, motion, trial.measured[0]).rms;
+  const Trajectory motion = simulate(
+      subject().system, signal,
+      initialState(subject().system, startCoordinates(trial, subject().system, {}), signal, 0.0),
+      simulation);
+  const double rms = compareWithMeasured(subject().system, motion, trial.measured[0]).rms;
   EXPECT_GT(rms, 0.01);
   EXPECT_NEAR(std::sqrt(trials.meanSquare(y)), rms, 1e-12);
   EXPECT_NEAR(std::sqrt(trials.meanSquare(y, 0)), rms, 1e-12);

@@ -19,7 +19,7 @@ struct Roles {
   Model model = readOsim(fixtures::ShippedElbow::root() + "/models/elbow8.osim");
   SystemOptions options;
   TrialOptions reading;
-  MusculoskeletalSystem arm;
+  MusculoskeletalSystem system;
   Trial trial;
   ParameterCatalogue catalogue;
   SimulationOptions simulation;
@@ -27,10 +27,10 @@ struct Roles {
   Roles(const std::vector<std::string>& free, const std::vector<std::string>& prescribed)
       : options{{free, {}}, {}, {}, false, prescribed},
         reading{.prescribed = prescribed},
-        arm(model, options),
+        system(model, options),
         trial(
             readTrial(fixtures::ShippedElbow::root() + "/emg_data/curl_slow.sto", model, reading)),
-        catalogue(model, arm, {beginningOf(trial, model, arm, {}).point.q, {}}) {
+        catalogue(model, system, {beginningOf(trial, model, system, {}).point.q, {}}) {
     simulation.duration = trial.duration();
   }
   ExperimentDesign design(std::vector<ChannelCandidate> observed, const GivenLimits& given,
@@ -39,21 +39,21 @@ struct Roles {
     question.observed = std::move(observed);
     question.parameters = catalogue.select({"BRA.max_isometric_force", "hand.mass"});
     const Eigen::VectorXd q = catalogue.nominal().start.q;
-    return {arm,
+    return {system,
             catalogue,
             catalogue.nominal(),
             trial,
             simulation,
             question,
-            withCoordinates({}, arm, given),
-            muscleGroups(arm, q, excite),
+            withCoordinates({}, system, given),
+            muscleGroups(system, q, excite),
             0.5};
   }
   /// The information that `sensitivity` finds in the trial as it would be written.
   Eigen::MatrixXd told(const ExperimentDesign& design, const DesignedExperiment& e) const {
-    const Trial again = trialFrom(plannedTable(arm, e.trial), "design", model, reading);
-    const StartPoint start{beginningOf(again, model, arm, {}).point.q, {}};
-    const StudiedTrial studied = studiedTrial(again, model, arm, start, simulation);
+    const Trial again = trialFrom(plannedTable(system, e.trial), "design", model, reading);
+    const StartPoint start{beginningOf(again, model, system, {}).point.q, {}};
+    const StudiedTrial studied = studiedTrial(again, model, system, start, simulation);
     return localSensitivity({studied}, {options, "", 1, design.question().observed,
                                         design.question().parameters})
         .information.fisher;
@@ -122,7 +122,7 @@ TEST(DesignChannels, PushTwoCoordinatesAndObserveWhatSensitivityDoes) {
     EXPECT_LE(design.inputs().largestTorque(e.trial, name), 2);
   }
   // what is written begins where the experiment does and has every channel
-  EXPECT_EQ(plannedTable(roles.arm, e.trial).columns.size(), 1 + 8 + 2 + 2 + 3);
+  EXPECT_EQ(plannedTable(roles.system, e.trial).columns.size(), 1 + 8 + 2 + 2 + 3);
 }
 
 // Through noise, scales and the criterion: dφ/dI at the information of several channels.

@@ -38,17 +38,17 @@ TEST(DesignSetup, NuisanceParametersHaveTheirDefaultPriorsAndNoneTwice) {
 TEST(DesignSetup, LimitsAreOfAllFreeCoordinatesOrByName) {
   const ShippedElbow elbow;
   const MusculoskeletalSystem two(elbow.model, {{{"elbow_flexion", "shoulder_elv"}, {}}, {}, {}});
-  const Coordinate& coordinate = elbow.arm.skeleton().coordinates().front();
+  const Coordinate& coordinate = elbow.system.skeleton().coordinates().front();
   DesignLimits limits;
   limits.surprise = 3;
-  const DesignLimits own = withCoordinates(limits, elbow.arm, {});
+  const DesignLimits own = withCoordinates(limits, elbow.system, {});
   EXPECT_EQ(own.surprise, 3);
   ASSERT_EQ(own.coordinates.size(), 1u);
   EXPECT_EQ(own.coordinates[0].lower, coordinate.rangeMin);
   EXPECT_EQ(own.coordinates[0].upper, coordinate.rangeMax);
   EXPECT_EQ(own.coordinates[0].torque, 10);
   GivenLimits given{{{"", {0.5, 1.0}}}, {{"", 4}}, {{"", 2}}};
-  const DesignLimits one = withCoordinates(limits, elbow.arm, given);
+  const DesignLimits one = withCoordinates(limits, elbow.system, given);
   EXPECT_EQ(one.coordinates[0].lower, 0.5);
   EXPECT_EQ(one.coordinates[0].upper, 1);
   EXPECT_EQ(one.coordinates[0].torque, 4);
@@ -69,7 +69,7 @@ TEST(DesignSetup, LimitsAreOfAllFreeCoordinatesOrByName) {
 TEST(DesignSetup, GroupsAreFlexorsExtensorsOrNames) {
   const ShippedElbow elbow;
   const auto groups =
-      muscleGroups(elbow.arm, elbow.catalogue.nominal().start.q, {"extensors", "BRA+BRD", "PT"});
+      muscleGroups(elbow.system, elbow.catalogue.nominal().start.q, {"extensors", "BRA+BRD", "PT"});
   ASSERT_EQ(groups.size(), 3u);
   EXPECT_EQ(groups[0].muscles, (std::vector<std::string>{"TRIlong", "TRIlat", "TRImed", "ANC"}));
   EXPECT_EQ(groups[1].muscles, (std::vector<std::string>{"BRA", "BRD"}));
@@ -97,12 +97,12 @@ TEST(DesignSetup, SaysWhatIsWrong) {
   EXPECT_EQ(optimalityNamed("D"), info::Optimality::d);
   throwsSaying(
       [&] {
-        (void)withCoordinates({}, elbow.arm, {{{"", {1.0, 1.0}}}});
+        (void)withCoordinates({}, elbow.system, {{{"", {1.0, 1.0}}}});
       },
       "range: 1 to 1 rad, must rise");
   throwsSaying(
       [&] {
-        (void)withCoordinates({}, elbow.arm, {{}, {{"shoulder_elv", 1}}});
+        (void)withCoordinates({}, elbow.system, {{}, {{"shoulder_elv", 1}}});
       },
       "torque of 'shoulder_elv': must be a coordinate that is free to move");
 }

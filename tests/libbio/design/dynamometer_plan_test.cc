@@ -22,7 +22,7 @@ struct DynamometerElbow {
     return options;
   }
   Model model = readOsim(fixtures::ShippedElbow::root() + "/models/elbow8.osim");
-  MusculoskeletalSystem arm{model, options()};
+  MusculoskeletalSystem system{model, options()};
 
   static DynamometerQuestion question() {
     DynamometerQuestion question;
@@ -36,7 +36,7 @@ struct DynamometerElbow {
     return question;
   }
   DynamometerPlan plan(const DynamometerQuestion& asked) const {
-    return planOnDynamometer(model, arm, options(), SimulationOptions(), asked);
+    return planOnDynamometer(model, system, options(), SimulationOptions(), asked);
   }
 };
 
@@ -106,7 +106,8 @@ TEST(DynamometerPlan, AReleaseLetsTheContractedMusclesShorten) {
     EXPECT_NEAR(angle[angle.size() - 1], one.to, 1e-12);
     for (Eigen::Index k = 0; k + 1 < angle.size(); ++k) {
       if (std::abs(speed[k]) < 1e-9) continue;  // while it moves, one group contracts fully
-      EXPECT_EQ(one.trial.values.row(k).segment(1, elbow.arm.numMuscles()).maxCoeff(), one.effort);
+      EXPECT_EQ(one.trial.values.row(k).segment(1, elbow.system.numMuscles()).maxCoeff(),
+                one.effort);
     }
   }
 }

@@ -32,9 +32,9 @@ struct Short {
     limits.coordinates = {{"elbow_flexion", 0, 130 * degree}};
   }
   ExperimentDesign design() const {
-    return {elbow.arm,   elbow.catalogue, elbow.catalogue.nominal(),
-            elbow.trial, simulation,      question,
-            limits,      groups,          0.2};
+    return {elbow.system, elbow.catalogue, elbow.catalogue.nominal(),
+            elbow.trial,  simulation,      question,
+            limits,       groups,          0.2};
   }
 };
 
@@ -48,7 +48,7 @@ DesignSearchSettings quickSearch() {
 
 TEST(ExperimentDesign, LowersTheBoundAndKeepsEveryLimit) {
   Short s;
-  s.groups = flexorsAndExtensors(s.elbow.arm, s.elbow.catalogue.nominal().start.q);
+  s.groups = flexorsAndExtensors(s.elbow.system, s.elbow.catalogue.nominal().start.q);
   ASSERT_EQ(s.groups.size(), 2u);
   const ExperimentDesign design = s.design();
   const DesignResult result = design.search(quickSearch());
@@ -56,7 +56,7 @@ TEST(ExperimentDesign, LowersTheBoundAndKeepsEveryLimit) {
   ASSERT_TRUE(std::isfinite(result.before.bound[0]));
   EXPECT_LT(result.after.bound[0], 0.7 * result.before.bound[0]);
   // the tables themselves, not what the search believes
-  const Table table = plannedTable(s.elbow.arm, result.after.trial);
+  const Table table = plannedTable(s.elbow.system, result.after.trial);
   const auto column = [&](const std::string& name) -> Eigen::VectorXd {
     return table.values.col(columnIndex(table, name));
   };
@@ -100,19 +100,20 @@ TEST(ExperimentDesign, WhatIsWrittenPlaysThePredictedMotion) {
   ASSERT_TRUE(result.improved);
   const support::ScratchFolder scratch;
   const auto file = scratch.path() / "design.sto";
-  writeTable(plannedTable(s.elbow.arm, result.after.trial), file);
+  writeTable(plannedTable(s.elbow.system, result.after.trial), file);
   const Trial trial = readTrial(file, s.elbow.model);
   ASSERT_EQ(trial.applied.size(), 1u);
   SimulationOptions options = s.simulation;
-  options.externalForce = externalForceOf(trial, s.elbow.arm);
-  const ExcitationSignal excitation = excitationOf(trial, s.elbow.arm);
+  options.externalForce = externalForceOf(trial, s.elbow.system);
+  const ExcitationSignal excitation = excitationOf(trial, s.elbow.system);
   const Trajectory motion = simulate(
-      s.elbow.arm, excitation,
-      initialState(s.elbow.arm, startCoordinates(trial, s.elbow.arm, {}), excitation, 0), options);
+      s.elbow.system, excitation,
+      initialState(s.elbow.system, startCoordinates(trial, s.elbow.system, {}), excitation, 0),
+      options);
   EXPECT_LT((motion.q - result.after.motion.q.leftCols(motion.q.cols())).cwiseAbs().maxCoeff(),
             1e-9);
   ASSERT_EQ(trial.measured.size(), 1u);
-  EXPECT_LT(compareWithMeasured(s.elbow.arm, motion, trial.measured[0]).largest, 1e-9);
+  EXPECT_LT(compareWithMeasured(s.elbow.system, motion, trial.measured[0]).largest, 1e-9);
 }
 
 TEST(ExperimentDesign, BoundIsThatOfTheInformationWithPriors) {

@@ -116,7 +116,7 @@ TEST(SeparatingDesign, ItsTableIsTheTrial) {
   const Asked asked;
   const SeparatingDesign design = asked.design();
   const SeparatingExperiment e = design.before();
-  const Table table = plannedTable(design.arm(), e.trial);
+  const Table table = plannedTable(design.system(), e.trial);
   const Trial trial = trialFrom(table, "table", asked.elbow.model);
   EXPECT_EQ(trial.muscles, e.trial.muscles);
   EXPECT_TRUE(trial.excitations == e.trial.excitations);

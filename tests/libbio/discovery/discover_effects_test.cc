@@ -201,10 +201,10 @@ TEST(Effects, ThatDissipateTakeEnergyOut) {
         values[static_cast<Index>(candidate.quantities[i])] = start[static_cast<Index>(i)];
       }
       const auto setting = c.data.encompassing().settingAt(values, {});
-      const MusculoskeletalSystem arm(setting.model, ShippedElbow::options());
+      const MusculoskeletalSystem system(setting.model, ShippedElbow::options());
       SimulationOptions options;
       options.duration = 0.9;
-      const Trajectory motion = simulateSetting(arm, setting, c.elbow.excitation, options);
+      const Trajectory motion = simulateSetting(system, setting, c.elbow.excitation, options);
       for (Index k = 1; k < motion.passiveWork.size(); ++k) {
         ASSERT_LE(motion.passiveWork[k], motion.passiveWork[k - 1]) << id;
       }

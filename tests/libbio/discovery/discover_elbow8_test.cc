@@ -49,11 +49,11 @@ std::vector<Trial> record(const std::vector<Hidden>& hidden, unsigned seed) {
     auto setting = data.encompassing().settingAt(values, {});
     const MeasuredChannel& old = elbow.trial.measured.front();
     setting.start.q[0] = old.values[0];
-    const MusculoskeletalSystem arm(setting.model, ShippedElbow::options());
+    const MusculoskeletalSystem system(setting.model, ShippedElbow::options());
     SimulationOptions options;
     options.integrator = Integrator::cvode;
     options.duration = old.times[old.times.size() - 1] - elbow.trial.times[0];
-    const Trajectory motion = simulateSetting(arm, setting, elbow.excitation, options);
+    const Trajectory motion = simulateSetting(system, setting, elbow.excitation, options);
     EXPECT_EQ(motion.outcome, Outcome::completed) << motion.why;
     Trial trial = elbow.trial;
     trial.file = name;
@@ -71,7 +71,7 @@ TEST(Discover, NamesViscousDampingOfTheEightMuscleElbow) {
   const MusculoskeletalProblem data(elbow.model, ShippedElbow::options(), "elbow_flexion",
                                     record({{"visc.viscosity", 0.3}}, 1));
   info::discover::Options options;
-  options.outputSd = 0.5 * degree;
+  options.sds = 0.5 * degree;
   const auto begin = std::chrono::steady_clock::now();
   const info::discover::Verdict verdict = info::discover::run(data, options);
   const double seconds =
@@ -95,7 +95,7 @@ TEST(Discover, UsesWhatComesBeforeAPositionAtWhichTheModelFails) {
   Model person = elbow.model;
   person.expressionForces.push_back(
       {"law", "elbow_flexion", "-0.4*(1+tanh((q-1.885)/0.01))", true, {}});
-  const MusculoskeletalSystem arm(person, ShippedElbow::options());
+  const MusculoskeletalSystem system(person, ShippedElbow::options());
   std::mt19937_64 random(8);
   std::normal_distribution<double> normal;
   std::vector<Trial> trials;
@@ -106,7 +106,7 @@ TEST(Discover, UsesWhatComesBeforeAPositionAtWhichTheModelFails) {
     SimulationOptions options;
     options.integrator = Integrator::cvode;
     const TrialReplay replay =
-        replayTrial(arm, trial, options, beginningOf(trial, person, arm, {}));
+        replayTrial(system, trial, options, beginningOf(trial, person, system, {}));
     ASSERT_EQ(replay.motion.outcome, Outcome::completed) << replay.motion.why;
     MeasuredChannel& measured = trial.measured.front();
     const auto n = static_cast<Index>(replay.motion.time.size());

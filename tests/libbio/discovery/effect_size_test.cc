@@ -86,7 +86,7 @@ TEST(EffectSize, ComesWithItsShareAndWhatItChangesInTheMotion) {
   const Sized s;
   const VectorXd values = s.with("const", 0.7);
   const Trajectory motion = s.data.motion(0, values);
-  const MuscleReport report = reportMuscles(s.data.armAt(0, values), motion);
+  const MuscleReport report = reportMuscles(s.data.systemAt(0, values), motion);
   const VectorXd net = report.tendonForce.cwiseProduct(report.momentArm).colwise().sum();
   const EffectSize size = s.of("const", 0.7);
   EXPECT_NEAR(size.moment.share, 0.7 / Sized::rms(net), 0.01 * size.moment.share);

@@ -29,13 +29,14 @@ std::vector<Trial> curls(const std::string& law, unsigned seed) {
     const ShippedElbow elbow("elbow8", name);
     Model model = elbow.model;
     if (!law.empty()) model.expressionForces.push_back({"law", "elbow_flexion", law, true, {}});
-    const MusculoskeletalSystem arm(model, ShippedElbow::options());
+    const MusculoskeletalSystem system(model, ShippedElbow::options());
     Trial trial = elbow.trial;
     trial.file = name;
     MeasuredChannel& measured = trial.measured.front();
     SimulationOptions options;
     options.integrator = Integrator::cvode;
-    const TrialReplay replay = replayTrial(arm, trial, options, beginningOf(trial, model, arm, {}));
+    const TrialReplay replay =
+        replayTrial(system, trial, options, beginningOf(trial, model, system, {}));
     EXPECT_EQ(replay.motion.outcome, Outcome::completed) << replay.motion.why;
     measured.times =
         VectorXd::Map(replay.motion.time.data(), static_cast<Index>(replay.motion.time.size()));
@@ -50,7 +51,7 @@ std::optional<info::discover::PositionBreak> breakOf(const std::vector<Trial>& t
   const ShippedElbow elbow;
   const MusculoskeletalProblem data(elbow.model, ShippedElbow::options(), "elbow_flexion", trials);
   info::discover::Verdict verdict;
-  verdict.outputSd = noise;
+  verdict.sds = noise;
   return info::discover::positionBreak(data, {}, verdict);
 }
 

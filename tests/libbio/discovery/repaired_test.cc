@@ -36,7 +36,7 @@ struct Found {
                                                     "elbow_flexion", trials, options);
     verdict.reached = info::discover::Stage::finished;
     verdict.finding = info::discover::Finding::named;
-    verdict.outputSd = 0.009;
+    verdict.sds = 0.009;
     verdict.values = info::discover::nominalValues(*data);
     double sign = 1;
     for (const std::size_t q : data->nuisances()) {
@@ -68,11 +68,11 @@ struct Found {
   double replay(const std::filesystem::path& file, const Trial& recorded) const {
     const Model model = readOsim(file);
     const SystemOptions options = ShippedElbow::options();
-    const MusculoskeletalSystem arm(
+    const MusculoskeletalSystem system(
         withExperimentalConditions(model, options, "elbow_flexion", recorded), options);
     SimulationOptions simulation;
     simulation.step = stepOf(model, simulation.integrator, {});
-    return replayTrial(arm, recorded, simulation, beginningOf(recorded, model, arm, {}))
+    return replayTrial(system, recorded, simulation, beginningOf(recorded, model, system, {}))
         .errors.at(0)
         .second.rms;
   }
@@ -97,8 +97,7 @@ TEST(Repaired, ReplaysOfTheWrittenModelGiveItsFiguresAndTheFits) {
         EXPECT_FALSE(one.driven) << id;
         EXPECT_EQ(one.isHeldOut, one.index == 1);
         EXPECT_NEAR(one.after, one.fitted, hundredth) << id << " " << step;
-        EXPECT_NEAR(f.replay(file, f.trials[one.index]), one.after, 1e-9)
-            << id << " " << step;
+        EXPECT_NEAR(f.replay(file, f.trials[one.index]), one.after, 1e-9) << id << " " << step;
         // the model as it came is further away or nearer, but not the same
         EXPECT_GT(std::abs(one.nominal - one.after), 10 * hundredth) << id;
       }

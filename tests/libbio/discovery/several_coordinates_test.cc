@@ -27,17 +27,17 @@ using testing::Not;
 constexpr double duration = 0.4;
 
 /// A trial with all these channels, whose values do not matter but for the first of a coordinate.
-Trial recorded(const ArmOfSeven& arm, const std::vector<Observable>& channels,
+Trial recorded(const ArmOfSeven& system, const std::vector<Observable>& channels,
                const std::vector<std::string>& prescribed = {}) {
   Trial trial;
   trial.file = "lift";
   trial.times = VectorXd::LinSpaced(41, 0, duration);
-  for (const SystemMuscle& muscle : arm.arm.muscles()) trial.muscles.push_back(muscle.name);
+  for (const SystemMuscle& muscle : system.system.muscles()) trial.muscles.push_back(muscle.name);
   trial.excitations.resize(41, static_cast<Index>(trial.muscles.size()));
   std::size_t hint = 0;
   VectorXd u(trial.excitations.cols());
   for (Index k = 0; k < 41; ++k) {
-    arm.excitation.at(trial.times[k], hint, u);
+    system.excitation.at(trial.times[k], hint, u);
     trial.excitations.row(k) = u.transpose();
   }
   for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -119,10 +119,11 @@ void expectDifferences(const MusculoskeletalProblem& data, const VectorXd& value
 
 struct TwoJoints {
   explicit TwoJoints(const std::vector<Observable>& channels)
-      : arm(duration, {"elbow_flexion", "shoulder_elv"}),
-        data(arm.model, arm.options, std::vector<std::string>{"elbow_flexion", "shoulder_elv"},
-             {recorded(arm, channels)}, exact()) {}
-  ArmOfSeven arm;
+      : system(duration, {"elbow_flexion", "shoulder_elv"}),
+        data(system.model, system.options,
+             std::vector<std::string>{"elbow_flexion", "shoulder_elv"},
+             {recorded(system, channels)}, exact()) {}
+  ArmOfSeven system;
   MusculoskeletalProblem data;
 };
 
@@ -196,7 +197,7 @@ TEST(SeveralCoordinates, AMusclesErrorActsOnAllThatItCrosses) {
   const auto at = c.data.predict(0, values, {}, {}, true);
   const auto n = static_cast<Index>(c.data.nodes(0).size()) / 2;
   ASSERT_EQ(at.scale.rows(), 2 * n);
-  const auto& muscles = c.data.encompassing().arm().muscles();
+  const auto& muscles = c.data.encompassing().system().muscles();
   ASSERT_EQ(at.scale.cols(), static_cast<Index>(muscles.size()) + 2);
   for (std::size_t m = 0; m < muscles.size(); ++m) {
     const auto column = at.scale.col(static_cast<Index>(m));
@@ -212,11 +213,11 @@ TEST(SeveralCoordinates, AMusclesErrorActsOnAllThatItCrosses) {
 
 // A dynamometer moves the shoulder and reads its moment; the elbow is free.
 TEST(SeveralCoordinates, AMomentIsAnOutput) {
-  ArmOfSeven arm(duration, {"elbow_flexion", "shoulder_elv"});
-  arm.options.prescribed = {"shoulder_elv"};
+  ArmOfSeven system(duration, {"elbow_flexion", "shoulder_elv"});
+  system.options.prescribed = {"shoulder_elv"};
   const MusculoskeletalProblem data(
-      arm.model, arm.options, std::vector<std::string>{"shoulder_elv"},
-      {recorded(arm, {{Kind::moment, "shoulder_elv", 0}}, {"shoulder_elv"})}, exact());
+      system.model, system.options, std::vector<std::string>{"shoulder_elv"},
+      {recorded(system, {{Kind::moment, "shoulder_elv", 0}}, {"shoulder_elv"})}, exact());
   EXPECT_THAT(idsOf(data), Contains("coulomb"));
   VectorXd values = info::discover::nominalValues(data);
   values[static_cast<Index>(quantityOf(data, "gain"))] = 0.1;
@@ -231,13 +232,14 @@ TEST(SeveralCoordinates, AMomentIsAnOutput) {
 }
 
 TEST(SeveralCoordinates, RefusesATrialWithoutAnyOfTheChannels) {
-  const ArmOfSeven arm(duration, {"elbow_flexion", "shoulder_elv"});
-  Trial other = recorded(arm, {});
+  const ArmOfSeven system(duration, {"elbow_flexion", "shoulder_elv"});
+  Trial other = recorded(system, {});
   support::throwsSaying(
       [&] {
         MusculoskeletalProblem(
-            arm.model, arm.options, std::vector<std::string>{"elbow_flexion", "shoulder_elv"},
-            {recorded(arm, {ofCoordinate("elbow_flexion"), ofCoordinate("shoulder_elv")}), other},
+            system.model, system.options, std::vector<std::string>{"elbow_flexion", "shoulder_elv"},
+            {recorded(system, {ofCoordinate("elbow_flexion"), ofCoordinate("shoulder_elv")}),
+             other},
             exact());
       },
       "lift: no measured value of 'elbow_flexion', 'shoulder_elv'");

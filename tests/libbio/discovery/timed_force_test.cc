@@ -98,7 +98,7 @@ TEST(TimedForce, StandsInTheDrivenTrialThatReplaysAsItWasScored) {
   c.put("torque_from", 0.4, 1.7);
   info::discover::Verdict verdict;
   verdict.values = c.values;
-  verdict.outputSd = 0.5 * degree;
+  verdict.sds = 0.5 * degree;
   const Repaired repaired = repairedModel(c.data, verdict, {}, {}, {"a test", {}});
   ASSERT_EQ(repaired.trials.size(), 1u);
   ASSERT_TRUE(repaired.trials[0].driven.has_value());

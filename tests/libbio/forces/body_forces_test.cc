@@ -29,13 +29,14 @@ struct Found {
   VectorXd passive, load;
 };
 
-Found forcesOf(const MusculoskeletalSystem& arm, const VectorXd& q, const VectorXd& v, double t) {
-  return stepping::withCoordinates(arm.skeleton(), [&](auto N) -> Found {
+Found forcesOf(const MusculoskeletalSystem& system, const VectorXd& q, const VectorXd& v,
+               double t) {
+  return stepping::withCoordinates(system.skeleton(), [&](auto N) -> Found {
     constexpr int n = decltype(N)::value;
     using Vector = Eigen::Matrix<double, n, 1>;
     using Matrix = Eigen::Matrix<double, n, n>;
-    SystemConfiguration<n> configuration(arm);
-    stepping::OtherForces<n> others(arm);
+    SystemConfiguration<n> configuration(system);
+    stepping::OtherForces<n> others(system);
     EXPECT_TRUE(others.any());
     configuration.moveTo(q);
     Vector passive = Vector::Zero(q.size());
@@ -48,12 +49,12 @@ Found forcesOf(const MusculoskeletalSystem& arm, const VectorXd& q, const Vector
 /// Where Simbody has a body's point; the arm's other coordinates at their defaults.
 class Simbody {
  public:
-  explicit Simbody(const ArmOfSeven& arm) : tree_(arm.model), arm_(&arm) {}
+  explicit Simbody(const ArmOfSeven& system) : tree_(system.model), system_(&system) {}
   Vector3d point(const VectorXd& q, const std::string& body, const Vector3d& p_B) const {
     if (body == "ground") return p_B;
     std::map<std::string, double> values;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      values[arm_->arm.skeleton().coordinates()[static_cast<std::size_t>(i)].name] = q[i];
+      values[system_->system.skeleton().coordinates()[static_cast<std::size_t>(i)].name] = q[i];
     }
     return tree_.pointInGround(values, body, p_B);
   }
@@ -67,7 +68,7 @@ class Simbody {
 
  private:
   SimbodyTree tree_;
-  const ArmOfSeven* arm_;
+  const ArmOfSeven* system_;
 };
 
 /// ∂f/∂q_j of a function of the posture.
@@ -111,7 +112,7 @@ TEST(BodyForces, LoadsDoTheVirtualWorkOfSimbodysPoints) {
                        T.dot(Vector3d(turn(2, 1), turn(0, 2), turn(1, 0)));
       }
     }
-    const Found found = forcesOf(c.arm, q, VectorXd::Zero(q.size()), t);
+    const Found found = forcesOf(c.system, q, VectorXd::Zero(q.size()), t);
     EXPECT_GT(expected.cwiseAbs().minCoeff(), 1e-4);
     EXPECT_LT((found.load - expected).cwiseAbs().maxCoeff(), 1e-10);
     EXPECT_TRUE(found.passive.isZero(0));
@@ -155,8 +156,8 @@ TEST(BodyForces, SpringsAndBushingsFollowTheirEnergy) {
     };
     Vector6 rate = Vector6::Zero();
     for (Eigen::Index j = 0; j < q.size(); ++j) rate += v[j] * slopeOf(deflection, q, j);
-    const Found still = forcesOf(c.arm, q, VectorXd::Zero(q.size()), 0);
-    const Found moving = forcesOf(c.arm, q, v, 0);
+    const Found still = forcesOf(c.system, q, VectorXd::Zero(q.size()), 0);
+    const Found moving = forcesOf(c.system, q, v, 0);
     for (Eigen::Index j = 0; j < q.size(); ++j) {
       const double expected = -slopeOf(energy, q, j);
       EXPECT_NEAR(still.passive[j], expected, 1e-9 * (1 + std::abs(expected))) << j;
@@ -228,8 +229,8 @@ TEST(BodyForces, HaveExactDerivativesInAllCoordinatesAndSpeeds) {
   for (const auto& free : frees) {
     for (const Model& model : {withLoads(), withSprings(), withElasticPaths()}) {
       const ArmOfSeven c(0.3, free, false, model);
-      stepping::withCoordinates(c.arm.skeleton(), [&](auto N) {
-        stepping::SystemDynamics<decltype(N)::value> dynamics(c.arm, c.excitation);
+      stepping::withCoordinates(c.system.skeleton(), [&](auto N) {
+        stepping::SystemDynamics<decltype(N)::value> dynamics(c.system, c.excitation);
         SystemState state = c.start;
         state.qDot = VectorXd::LinSpaced(state.q.size(), 1.2, -0.8);
         state.activation.array() += 0.1;  // away from the kink at fibre speed 0
@@ -264,7 +265,7 @@ TEST(BodyForces, IntegratorsAgreeAndKeepTheEnergy) {
       options.integrator = integrator;
       options.step = step;
       options.duration = 0.4;
-      Trajectory motion = simulate(c.arm, c.excitation, c.start, options);
+      Trajectory motion = simulate(c.system, c.excitation, c.start, options);
       EXPECT_EQ(motion.outcome, Outcome::completed) << motion.why;
       return motion;
     };
@@ -279,8 +280,8 @@ TEST(BodyForces, IntegratorsAgreeAndKeepTheEnergy) {
     EXPECT_LT(error(played(Integrator::rungeKutta4, 2e-4)), 1e-6);
     EXPECT_LT(error(fine), 1e-3);
     EXPECT_NEAR(std::log2(error(coarse) / error(fine)), 2, 0.2);
-    EXPECT_NEAR(std::log2(energyError(c.arm, coarse) / energyError(c.arm, fine)), 2, 0.3);
-    EXPECT_LT(energyError(c.arm, exact), 1e-8);
+    EXPECT_NEAR(std::log2(energyError(c.system, coarse) / energyError(c.system, fine)), 2, 0.3);
+    EXPECT_LT(energyError(c.system, exact), 1e-8);
     EXPECT_NEAR(fine.externalWork.tail(1)[0], exact.externalWork.tail(1)[0], 1e-3);
   }
 }
@@ -288,13 +289,13 @@ TEST(BodyForces, IntegratorsAgreeAndKeepTheEnergy) {
 TEST(BodyForces, SensitivitiesMatchDifferences) {
   for (const auto& free : frees) {
     const ArmOfSeven c(0.2, free, false, withAll());
-    const ParameterCatalogue catalogue(c.model, c.arm,
+    const ParameterCatalogue catalogue(c.model, c.system,
                                        {c.start.q, VectorXd::Constant(c.start.q.size(), 0.3)});
     const auto wanted = catalogue.select({"hand.mass", "BRA.max_isometric_force"});
     SimulationOptions options;
     options.duration = 0.06;
     const fixtures::DiscoveryProblem d = fixtures::compareWithDifferences(
-        c.arm, c.options, c.excitation, catalogue, wanted, options);
+        c.system, c.options, c.excitation, catalogue, wanted, options);
     EXPECT_GT(d.compared, 20);
     EXPECT_LT(d.worst, 1e-5) << d.of;
   }
@@ -304,8 +305,8 @@ TEST(BodyForces, ABatchOfHingesHasThemToo) {
   const ArmOfSeven c(0.3, {"elbow_flexion"}, false, withAll());
   SimulationOptions options;
   options.duration = 0.1;
-  const std::vector<LaneJob> jobs(2, LaneJob{&c.arm, &c.excitation, &c.start});
-  const Trajectory alone = simulate(c.arm, c.excitation, c.start, options);
+  const std::vector<LaneJob> jobs(2, LaneJob{&c.system, &c.excitation, &c.start});
+  const Trajectory alone = simulate(c.system, c.excitation, c.start, options);
   for (const Trajectory& one : simulateTogether(jobs, options)) {
     EXPECT_LT((one.q - alone.q).cwiseAbs().maxCoeff(), 1e-12);
   }

@@ -38,7 +38,7 @@ struct Played {
   Trajectory play(Integrator integrator, double step) {
     options.integrator = integrator;
     options.step = step;
-    return simulateSetting(elbow.arm, elbow.catalogue.nominal(), elbow.excitation, options);
+    return simulateSetting(elbow.system, elbow.catalogue.nominal(), elbow.excitation, options);
   }
 };
 
@@ -112,9 +112,9 @@ TEST(ExternalForce, IntegratorsAgreeUnderIt) {
 
 TEST(ExternalForce, ItsWorkClosesTheEnergyBalance) {
   Played p;
-  EXPECT_LT(energyError(p.elbow.arm, p.play(Integrator::cvode, 0.01)), 1e-6);
-  const double coarse = energyError(p.elbow.arm, p.play(Integrator::variational, 0.002));
-  const double fine = energyError(p.elbow.arm, p.play(Integrator::variational, 0.001));
+  EXPECT_LT(energyError(p.elbow.system, p.play(Integrator::cvode, 0.01)), 1e-6);
+  const double coarse = energyError(p.elbow.system, p.play(Integrator::variational, 0.002));
+  const double fine = energyError(p.elbow.system, p.play(Integrator::variational, 0.001));
   EXPECT_LT(coarse, 0.02);
   EXPECT_GT(coarse / fine, 2.5);
   EXPECT_LT(coarse / fine, 6.5);
@@ -140,7 +140,7 @@ TEST(ExternalForce, SensitivitiesMatchDifferencesUnderIt) {
     const auto wanted =
         p.elbow.catalogue.select({"TRI.radius", "hand.mass", "initial.elbow_flexion"});
     const SensitivityTrajectory s =
-        simulateWithSensitivities(p.elbow.arm, p.elbow.catalogue, p.elbow.catalogue.nominal(),
+        simulateWithSensitivities(p.elbow.system, p.elbow.catalogue, p.elbow.catalogue.nominal(),
                                   wanted, p.elbow.excitation, options);
     const Eigen::VectorXd theta = p.elbow.catalogue.values(wanted);
     for (Eigen::Index j = 0; j < theta.size(); ++j) {
@@ -149,8 +149,8 @@ TEST(ExternalForce, SensitivitiesMatchDifferencesUnderIt) {
         Eigen::VectorXd moved = theta;
         moved[j] = value;
         const auto setting = p.elbow.catalogue.at(wanted, moved);
-        const MusculoskeletalSystem arm(setting.model, ShippedElbow::options());
-        return simulateSetting(arm, setting, p.elbow.excitation, options.simulation);
+        const MusculoskeletalSystem system(setting.model, ShippedElbow::options());
+        return simulateSetting(system, setting, p.elbow.excitation, options.simulation);
       };
       const Eigen::VectorXd difference =
           (at(theta[j] + h).q.row(0) - at(theta[j] - h).q.row(0)).transpose() / (2 * h);

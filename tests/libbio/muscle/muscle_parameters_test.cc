@@ -29,7 +29,7 @@ double lengthAt(const SchutteMuscle<double>& muscle, const Point& point) {
 
 TEST(MuscleParameters, DerivativesAgreeWithTheScalarType) {
   const fixtures::ShippedElbow elbow;
-  for (const SystemMuscle& m : elbow.arm.muscles()) {
+  for (const SystemMuscle& m : elbow.system.muscles()) {
     const SchutteQuantities<double>& p = m.muscle.schutte().quantities();
     const SchutteQuantities<D> q{D(p.maxIsometricForce, 6, 0), D(p.optimalFibreLength, 6, 1),
                                  D(p.tendonSlackLength, 6, 2), D(p.pennation, 6, 3),

@@ -47,9 +47,9 @@ TEST(HostileInput, APatternOfManyStarsIsMatchedAtOnce) {
 TEST(HostileInput, AMuscleOfNoFiniteLengthIsNamed) {
   fixtures::ShippedElbow elbow;
   elbow.model.muscles[0].path.points[0].location.x() = 1e300;
-  const MusculoskeletalSystem arm(elbow.model, fixtures::ShippedElbow::options());
+  const MusculoskeletalSystem system(elbow.model, fixtures::ShippedElbow::options());
   const std::string refusal = refusedWith<NoStaticEquilibrium>(
-      [&] { initialState(arm, Eigen::VectorXd::Constant(1, 0.5), elbow.excitation, 0); });
+      [&] { initialState(system, Eigen::VectorXd::Constant(1, 0.5), elbow.excitation, 0); });
   EXPECT_THAT(refusal, HasSubstr("muscle '" + elbow.model.muscles[0].name +
                                  "': muscle–tendon length at the start = inf m, must be finite"));
 }

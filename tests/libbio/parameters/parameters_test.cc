@@ -55,8 +55,8 @@ TEST(Parameters, SetTheModelAndNothingElse) {
     const double value = std::min(p.value + 0.1 * p.sd, p.upper);
     const auto setting = c.at({i}, Eigen::VectorXd::Constant(1, value));
     // compiled anew, the changed model tells the new value where it tells values at all
-    const MusculoskeletalSystem arm(setting.model, ShippedElbow::options());
-    const ParameterCatalogue again(setting.model, arm, setting.start, setting.mapping);
+    const MusculoskeletalSystem system(setting.model, ShippedElbow::options());
+    const ParameterCatalogue again(setting.model, system, setting.start, setting.mapping);
     for (std::size_t j = 0; j < c.parameters().size(); ++j) {
       const bool isScale = p.name.ends_with("_scale") && !p.name.ends_with("time_scale");
       if (j >= again.parameters().size() || p.isGroup || c.parameters()[j].isGroup) continue;
@@ -79,8 +79,8 @@ TEST(Parameters, AChangedModelIsWrittenAndReadAgain) {
   const Model again = readOsim(file);
   std::filesystem::remove(file);
   EXPECT_EQ(findWrapObject(again, "TRI").radius, 0.018);
-  const MusculoskeletalSystem arm(again, ShippedElbow::options());
-  const ParameterCatalogue catalogue(again, arm, setting.start);
+  const MusculoskeletalSystem system(again, ShippedElbow::options());
+  const ParameterCatalogue catalogue(again, system, setting.start);
   EXPECT_NEAR(catalogue.parameters()[catalogue.find("BIClong.point9.x")].value, 0.004, 1e-12);
   EXPECT_EQ(findBody(again, "hand").inertia[3], 1e-5);
 }

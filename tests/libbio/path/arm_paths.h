@@ -32,7 +32,7 @@ inline Joint hinge(const std::string& name, const std::string& parent, const V& 
 }
 
 // Upper arm, ulna, radius: shoulder about z, elbow about a tilted z, forearm rotation about −y.
-inline Model arm() {
+inline Model system() {
   Model model;
   for (const char* name : {"humerus", "ulna", "radius"}) {
     Body body;

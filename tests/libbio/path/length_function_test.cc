@@ -96,7 +96,7 @@ Muscle byFunction(std::vector<std::string> coordinates,
 
 /// rotation = 0.2 + 0.5 shoulder − 0.1 shoulder²
 Model coupledArm() {
-  Model model = arm();
+  Model model = system();
   model.couplers.push_back(
       {"couple", "shoulder", "rotation", {1, PolynomialFunction{{-0.1, 0.5, 0.2}}}});
   return model;
@@ -104,7 +104,7 @@ Model coupledArm() {
 
 TEST(LengthFunction, HasExactDerivativesInFreeLockedAndCoupledCoordinates) {
   const Muscle m = byFunction({"rotation", "shoulder", "flexion"}, somePolynomial(3, 4));
-  const Model model = arm();
+  const Model model = system();
   ArmPath<1>(model, m).expectDerivatives(ArmPath<1>::Q(0.4));
   ArmPath<2>(model, m).expectDerivatives({0.4, -0.3});
   ArmPath<3>(model, m).expectDerivatives({0.6, 0.4, -0.3});
@@ -133,7 +133,7 @@ TEST(LengthFunction, HasExactDerivativesInFreeLockedAndCoupledCoordinates) {
 
 TEST(LengthFunction, IsTheSameOverATree) {
   const Muscle m = byFunction({"flexion", "rotation", "shoulder"}, somePolynomial(3, 5));
-  const Model model = arm();
+  const Model model = system();
   ArmPath<3> compiled(model, m);
   SkeletonOptions options;
   options.freeCoordinates = ArmPath<3>::names();
@@ -154,7 +154,7 @@ TEST(LengthFunction, IsTheSameOverATree) {
 }
 
 TEST(LengthFunction, OfOneCoordinateMayBeAnyFunction) {
-  const Model model = arm();
+  const Model model = system();
   for (const Function& f : {Function{2, LinearFunction{-0.02, 0.3}},
                             Function{1, PolynomialFunction{{0.01, -0.03, 0.3}}},
                             Function{1, SplineFunction{{0, 1, 2, 3}, {0.3, 0.28, 0.27, 0.29}}}}) {
@@ -166,7 +166,7 @@ TEST(LengthFunction, OfOneCoordinateMayBeAnyFunction) {
 }
 
 TEST(LengthFunction, NeedsAsManyCoordinatesAsArguments) {
-  const Model model = arm();
+  const Model model = system();
   EXPECT_THAT([&] { ArmPath<1>(model, byFunction({"flexion"}, somePolynomial(2, 1))); },
               testing::ThrowsMessage<std::invalid_argument>(
                   testing::HasSubstr("of 2 arguments is given 1 coordinates")));

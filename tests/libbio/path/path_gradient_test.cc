@@ -114,11 +114,11 @@ TEST(PathGradient, MatchesDifferencesOverEllipsoids) {
 TEST(PathGradient, MovingTheWholeArmMovesNothing) {
   // shifting all points and objects of one fixed body together is a shift of the other ones
   const fixtures::ShippedElbow elbow;
-  const Skeleton& skeleton = elbow.arm.skeleton();
+  const Skeleton& skeleton = elbow.system.skeleton();
   std::vector<RigidMotion<double, 1>> moved(skeleton.numSegments());
   const Eigen::Matrix<double, 1, 1> q(1.4);
   skeleton.motions<double, 1>(q, moved.data());
-  for (const SystemMuscle& m : elbow.arm.muscles()) {
+  for (const SystemMuscle& m : elbow.system.muscles()) {
     const Muscle& muscle = findMuscle(elbow.model, m.name);
     const PathGradients gradients(elbow.model, skeleton, muscle, m.path);
     PathGradient<1> g = gradients.workspace<1>();

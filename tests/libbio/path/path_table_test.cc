@@ -163,9 +163,9 @@ TEST(PathTable, SimulatesTheSameMotion) {
   options.integrator = Integrator::variational;
   options.step = 0.005;
   options.duration = 2;
-  const auto motion = [&](const MusculoskeletalSystem& arm) {
+  const auto motion = [&](const MusculoskeletalSystem& system) {
     const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 60 * degree);
-    return simulate(arm, excitation, initialState(arm, q, excitation, 0), options);
+    return simulate(system, excitation, initialState(system, q, excitation, 0), options);
   };
   const Trajectory exact = motion(plain), found = motion(tabulated);
   ASSERT_EQ(exact.outcome, Outcome::completed);
@@ -199,9 +199,9 @@ TEST(PathTable, IsSharedByPathsOfTheSameShape) {
 TEST(PathTable, IsNotMadeForTwoCoordinates) {
   SystemOptions options = elbow(true);
   options.skeleton.freeCoordinates = {"elbow_flexion", "pro_sup"};
-  const MusculoskeletalSystem arm(elbow8(), options);
-  ASSERT_GE(arm.numMuscles(), 8u);
-  for (const SystemMuscle& muscle : arm.muscles()) EXPECT_EQ(muscle.path.table(), nullptr);
+  const MusculoskeletalSystem system(elbow8(), options);
+  ASSERT_GE(system.numMuscles(), 8u);
+  for (const SystemMuscle& muscle : system.muscles()) EXPECT_EQ(muscle.path.table(), nullptr);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ using namespace fixtures;
 
 // The same point moved by hand: a hinge, Rodrigues' formula.
 TEST(MusclePath, IsTheSumOfItsStraightSpans) {
-  ArmPath<1> s(arm(), extensor());
+  ArmPath<1> s(system(), extensor());
   const V axis = V(0.05, 0.04, 1).normalized();
   for (const double angle : {0.0, 0.7, 1.9}) {
     const V P = V(-0.017, -0.267, -0.012);
@@ -29,13 +29,13 @@ TEST(MusclePath, IsTheSumOfItsStraightSpans) {
     EXPECT_NEAR(jet.length, fixed + (Q - P).norm(), 1e-15);
     EXPECT_FALSE(jet.wrapped);
     // moment arm: unit tangent · (axis × arm)
-    const V arm = Q - V(0.006, -0.29, -0.012);
-    EXPECT_NEAR(jet.dL_dq[0], (Q - P).normalized().dot(axis.cross(arm)), 1e-15);
+    const V system = Q - V(0.006, -0.29, -0.012);
+    EXPECT_NEAR(jet.dL_dq[0], (Q - P).normalized().dot(axis.cross(system)), 1e-15);
   }
 }
 
 TEST(MusclePath, DerivativesAgreeWithDifferences) {
-  const Model model = arm();
+  const Model model = system();
   int contact = 0;
   for (const std::vector<std::string>& wraps : {std::vector<std::string>{},
                                                 {"cylinder"},
@@ -61,7 +61,7 @@ TEST(MusclePath, DerivativesAgreeWithDifferences) {
 }
 
 TEST(MusclePath, WithoutMovingSpansHasConstantLength) {
-  const Model model = arm();
+  const Model model = system();
   ArmPath<1> s(model, muscle({point("humerus", {0, 0, 0}), point("humerus", {0, -0.1, 0}),
                               point("ground", {0, 0.3, 0})}));
   EXPECT_FALSE(s.path.moves());
@@ -73,7 +73,7 @@ TEST(MusclePath, WithoutMovingSpansHasConstantLength) {
 
 // A surface on spans that do not move is part of the constant length.
 TEST(MusclePath, WrapsFixedSpansOnce) {
-  const Model model = arm();
+  const Model model = system();
   const Muscle m =
       muscle({point("humerus", {-0.02, -0.25, -0.012}), point("humerus", {0.03, -0.33, -0.012}),
               point("radius", {0.004, -0.2, -0.01})},
@@ -89,7 +89,7 @@ TEST(MusclePath, WrapsFixedSpansOnce) {
 }
 
 TEST(MusclePath, PathPointsLieOnTheSurfaceAndSumToTheLength) {
-  const Model model = arm();
+  const Model model = system();
   for (const char* wrap : {"cylinder", "sphere", "moved"}) {
     for (const Muscle& m : {extensor({wrap}), flexor({wrap})}) {
       ArmPath<1> s(model, m);
@@ -126,7 +126,7 @@ TEST(MusclePath, PathPointsLieOnTheSurfaceAndSumToTheLength) {
 }
 
 TEST(MusclePath, ConditionalPointsActInTheirRange) {
-  const Model model = arm();
+  const Model model = system();
   Muscle m = flexor();
   PathPoint guide = point("humerus", {0.03, -0.25, -0.01});
   guide.condition = PointCondition{"flexion", 0.5, 1.0};
@@ -153,7 +153,7 @@ TEST(MusclePath, ConditionalPointsActInTheirRange) {
 
 // A guide that lifts the path off an ellipsoid wherever it could be touched makes it harmless.
 TEST(MusclePath, LooksAtSpansOnlyWhereTheirPointsAreActive) {
-  const Model model = arm();
+  const Model model = system();
   Muscle m = extensor({"odd"});
   EXPECT_EQ(ArmPath<1>(model, m).path.compiled().chains.size(), 1u);
   PathPoint guide = point("humerus", {-0.05, -0.345, -0.012});
@@ -164,7 +164,7 @@ TEST(MusclePath, LooksAtSpansOnlyWhereTheirPointsAreActive) {
 
 // Of two cylinders about one axis the wider holds the path.
 TEST(MusclePath, SolvesSeveralObjectsOnASpanTogether) {
-  Model model = arm();
+  Model model = system();
   WrapObject second = model.wrapObjects[0];
   second.name = "second";
   second.radius = 0.018;
@@ -183,7 +183,7 @@ TEST(MusclePath, SolvesSeveralObjectsOnASpanTogether) {
 }
 
 TEST(MusclePath, MovingPointsFollowTheirFunctions) {
-  const Model model = arm();
+  const Model model = system();
   Muscle m = flexor();
   PointMotion motion;
   motion.coordinate = {"rotation", "flexion", ""};
@@ -211,7 +211,7 @@ TEST(MusclePath, MovingPointsFollowTheirFunctions) {
 
 TEST(MusclePath, LengthFollowsItsParameters) {
   using Dual2 = info::Dual<2>;
-  const Model model = arm();
+  const Model model = system();
   const Muscle m = extensor({"cylinder"});
   ArmPath<1> s(model, m);
   const double angle = 1.6;
@@ -257,7 +257,7 @@ TEST(MusclePath, LengthFollowsItsParameters) {
 // The way that recomputes everything agrees with the compiled one, for ends fixed in the ground
 // too.
 TEST(MusclePath, RecomputedFromItsParametersItIsTheSame) {
-  const Model model = arm();
+  const Model model = system();
   for (const char* wrap : {"cylinder", "sphere", "moved"}) {
     Muscle m = flexor({wrap});
     m.path.points.insert(m.path.points.begin(), point("ground", {0.1, 0.6, 0.02}));
@@ -277,7 +277,7 @@ TEST(MusclePath, RecomputedFromItsParametersItIsTheSame) {
 }
 
 TEST(MusclePath, RangeOfPointsLimitsAWrap) {
-  const Model model = arm();
+  const Model model = system();
   Muscle m = extensor({"cylinder"});
   const ArmPath<1>::Q q(1.8);
   ArmPath<1> whole(model, m);
@@ -292,7 +292,7 @@ TEST(MusclePath, RangeOfPointsLimitsAWrap) {
 }
 
 TEST(MusclePath, AnEllipsoidWithEqualSemiAxesIsASphere) {
-  Model model = arm();
+  Model model = system();
   model.wrapObjects[4].semiAxes = {0.018, 0.018, 0.018};
   ArmPath<1> ball(model, extensor({"odd"})), sphere(model, extensor({"sphere"}));
   for (const double angle : {0.5, 1.5, 2.0}) {
@@ -302,7 +302,7 @@ TEST(MusclePath, AnEllipsoidWithEqualSemiAxesIsASphere) {
 }
 
 TEST(MusclePath, AnEllipsoidIsACylinderWhereAskedFor) {
-  Model model = arm();
+  Model model = system();
   ArmPath<1> cylinder(model, extensor({"cylinder"}));
   const ArmPath<1>::Q q(1.8);
   ArmPath<1> asked(model, extensor({"ellipsoid"}), {"ellipsoid"});
@@ -331,7 +331,7 @@ TEST(MusclePath, AnEllipsoidIsACylinderWhereAskedFor) {
 }
 
 TEST(MusclePath, SaysWhatItLeavesOut) {
-  const Model model = arm();
+  const Model model = system();
   ArmPath<1> outOfReach(model, muscle({point("humerus", {-0.017, -0.267, -0.012}),
                                        point("ulna", {-0.022, 0.010, -0.001})},
                                       {"far"}));
@@ -342,7 +342,7 @@ TEST(MusclePath, SaysWhatItLeavesOut) {
 }
 
 TEST(MusclePath, RefusesWhatItCannotSimulate) {
-  const Model model = arm();
+  const Model model = system();
   const auto refuses = [&](const Muscle& m, const std::vector<std::string>& asCylinder,
                            const char* words) {
     try {

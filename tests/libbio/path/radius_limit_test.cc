@@ -18,9 +18,9 @@ using fixtures::ShippedElbow;
 // hand from the model's numbers, hinge and cylinder.
 TEST(RadiusLimit, IsWhereTheNearestPointOfAPathLies) {
   const ShippedElbow elbow;
-  const auto postures = samplePostures(elbow.arm.skeleton());
+  const auto postures = samplePostures(elbow.system.skeleton());
   int triceps = 0, others = 0;
-  for (const SystemMuscle& muscle : elbow.arm.muscles()) {
+  for (const SystemMuscle& muscle : elbow.system.muscles()) {
     const Path& path = findMuscle(elbow.model, muscle.name).path;
     for (std::size_t i = 0; i < path.wraps.size(); ++i) {
       const RadiusLimit limit = radiusLimit(muscle.path.compiled(), i, postures);
@@ -32,7 +32,7 @@ TEST(RadiusLimit, IsWhereTheNearestPointOfAPathLies) {
       ++triceps;
       EXPECT_NEAR(limit.radius, 0.0206, 1e-5) << muscle.name;
       EXPECT_EQ(limit.point, path.points.size() - 1);
-      const std::string where = describe(limit, path, elbow.arm.skeleton());
+      const std::string where = describe(limit, path, elbow.system.skeleton());
       EXPECT_THAT(where, testing::StartsWith("path point " + path.points.back().name));
       EXPECT_THAT(where, testing::HasSubstr("lies inside at elbow_flexion = 5"));
     }
@@ -47,9 +47,9 @@ TEST(RadiusLimit, LeavesOutWhatIsInsideAlready) {
   for (WrapObject& wrap : elbow.model.wrapObjects) {
     if (wrap.name == "TRI") wrap.radius = 0.022;
   }
-  const MusculoskeletalSystem arm(elbow.model, ShippedElbow::options());
+  const MusculoskeletalSystem system(elbow.model, ShippedElbow::options());
   const RadiusLimit limit =
-      radiusLimit(arm.muscles().front().path.compiled(), 0, samplePostures(arm.skeleton()));
+      radiusLimit(system.muscles().front().path.compiled(), 0, samplePostures(system.skeleton()));
   EXPECT_NEAR(limit.radius, 0.0315, 1e-4);  // the other end of the span
 }
 

@@ -28,7 +28,7 @@ Skeleton armTree(const Model& model) {
 const std::vector<std::vector<std::string>> chains{{"odd"}, {"moved", "odd"}, {"odd", "moved"}};
 
 TEST(TreeChain, HasLengthsAndDerivativesOfTheCompiledPath) {
-  const Model model = arm();
+  const Model model = system();
   const Skeleton tree = armTree(model);
   int wrapped = 0, severalSegments = 0;
   for (const auto& wraps : chains) {
@@ -60,7 +60,7 @@ TEST(TreeChain, HasLengthsAndDerivativesOfTheCompiledPath) {
 }
 
 TEST(TreeChain, HasParameterGradientsOfTheCompiledPath) {
-  const Model model = arm();
+  const Model model = system();
   const Skeleton tree = armTree(model);
   for (const auto& wraps : chains) {
     for (const Muscle& m : {extensor(wraps), flexor(wraps)}) {

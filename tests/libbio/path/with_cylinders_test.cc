@@ -12,7 +12,7 @@ using namespace fixtures;
 
 // The arm with an ellipsoid whose odd semi-axis is this one.
 Model armWithEllipsoid(int axis, const V& orientation, const std::string& quadrant) {
-  Model model = arm();
+  Model model = system();
   for (WrapObject& wrap : model.wrapObjects) {
     if (wrap.name != "ellipsoid") continue;
     wrap.semiAxes.setConstant(0.016);
@@ -54,22 +54,22 @@ TEST(WithCylinders, PathsAreThoseOfEllipsoidsTakenForCylinders) {
 }
 
 TEST(WithCylinders, LeavesTheOthersAlone) {
-  Model model = arm();
+  Model model = system();
   EXPECT_EQ(withCylinders(model, {}), model);
   EXPECT_EQ(withCylinders(model, {"cylinder", "sphere"}), model);
   for (WrapObject& wrap : model.wrapObjects)
     if (wrap.name == "ellipsoid") wrap.semiAxes = {0.02, 0.02, 0.02};
   EXPECT_EQ(withCylinders(model, {"ellipsoid"}), model);  // a sphere
-  const Model with = withCylinders(arm(), {"ellipsoid"});
-  ASSERT_EQ(with.remarks.size(), arm().remarks.size() + 1);
+  const Model with = withCylinders(system(), {"ellipsoid"});
+  ASSERT_EQ(with.remarks.size(), system().remarks.size() + 1);
   EXPECT_EQ(with.remarks.back(),
             "wrap object 'ellipsoid' is a cylinder in place of its ellipsoid, as asked");
 }
 
 TEST(WithCylinders, RefusesWhatIsNone) {
-  support::throwsSaying([] { withCylinders(arm(), {"odd"}); },
+  support::throwsSaying([] { withCylinders(system(), {"odd"}); },
                         "its semi-axes are 0.016, 0.02 and 0.05 m, two must be equal");
-  support::throwsSaying([] { withCylinders(arm(), {"ball"}); }, "ball");
+  support::throwsSaying([] { withCylinders(system(), {"ball"}); }, "ball");
 }
 
 }  // namespace

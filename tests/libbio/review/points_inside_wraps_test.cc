@@ -16,8 +16,8 @@ using testing::IsEmpty;
 
 /// Upper arm, ulna and radius, and a wrap object of each shape at the humerus' origin, whose centre
 /// the default posture places at (0.1, 0.5, 0) in the ground.
-Model armWith(WrapShape shape) {
-  Model model = fixtures::arm();
+Model systemWith(WrapShape shape) {
+  Model model = fixtures::system();
   WrapObject object;
   object.name = "object";
   object.body = "humerus";

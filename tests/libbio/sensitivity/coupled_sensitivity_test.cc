@@ -17,15 +17,15 @@ using fixtures::ShippedElbow;
 DiscoveryProblem compare(const ShippedElbow& elbow, const std::vector<std::size_t>& wanted,
                          const SimulationOptions& options) {
   DiscoveryProblem d = fixtures::compareWithDifferences(
-      elbow.arm, ShippedElbow::options(), elbow.excitation, elbow.catalogue, wanted, options);
+      elbow.system, ShippedElbow::options(), elbow.excitation, elbow.catalogue, wanted, options);
   fixtures::tell(d);
   return d;
 }
 
-stepping::StepTape tapeOf(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+stepping::StepTape tapeOf(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                           const SystemState& start, const SimulationOptions& options) {
   stepping::StepTape tape;
-  stepping::simulateVariational(arm, excitation, start, options, &tape);
+  stepping::simulateVariational(system, excitation, start, options, &tape);
   return tape;
 }
 
@@ -47,8 +47,8 @@ TEST(CoupledSensitivity, MatchesDifferencesForPassiveForcesAndAcrossASwitch) {
   const ShippedElbow elbow("elbow8_passive", "curl_fast");
   const auto options = forSeconds(0.8);
   const stepping::StepTape tape =
-      tapeOf(elbow.arm, elbow.excitation,
-             startOf(elbow.arm, elbow.catalogue.nominal(), elbow.excitation, 0), options);
+      tapeOf(elbow.system, elbow.excitation,
+             startOf(elbow.system, elbow.catalogue.nominal(), elbow.excitation, 0), options);
   EXPECT_GT(timesWithLaw(tape, stepping::StepTape::Time::Law::onSwitch), 0);
   const DiscoveryProblem d =
       compare(elbow,
@@ -70,17 +70,17 @@ TEST(CoupledSensitivity, MatchesDifferencesForTheLeftForcedScheme) {
 TEST(CoupledSensitivity, MatchesDifferencesForTwoCoordinatesThatStartMoving) {
   Model model = readOsim(ShippedElbow::root() + "/models/elbow8.osim");
   model.springForces.push_back({"elbow_spring", "elbow_flexion", 3.0, 0.8, 0.2, true});
-  const SystemOptions armOptions{{{"elbow_flexion", "pro_sup"}, {}}, {}, {}};
-  const MusculoskeletalSystem arm(model, armOptions);
+  const SystemOptions systemOptions{{{"elbow_flexion", "pro_sup"}, {}}, {}, {}};
+  const MusculoskeletalSystem system(model, systemOptions);
   const Trial trial = readTrial(ShippedElbow::root() + "/emg_data/curl_slow.sto", model);
-  const ExcitationSignal excitation = excitationOf(trial, arm);
-  const ParameterCatalogue catalogue(model, arm,
+  const ExcitationSignal excitation = excitationOf(trial, system);
+  const ParameterCatalogue catalogue(model, system,
                                      {Eigen::Vector2d(0.6, 0.1), Eigen::Vector2d(0.5, -0.4)});
   const auto wanted =
       catalogue.select({"BIClong.max_isometric_force", "BIClong.point9.x", "BIClong.point10.y",
                         "BRD.point3.z", "TRI.radius", "TRI.rotation.x", "hand.mass",
                         "radius.mass_center.x", "hand.inertia.yy", "elbow_spring.*", "initial.*"});
-  const DiscoveryProblem d = fixtures::compareWithDifferences(arm, armOptions, excitation,
+  const DiscoveryProblem d = fixtures::compareWithDifferences(system, systemOptions, excitation,
                                                               catalogue, wanted, forSeconds(0.12));
   fixtures::tell(d);
   EXPECT_LT(d.worst, 1e-5) << d.of;
@@ -89,23 +89,23 @@ TEST(CoupledSensitivity, MatchesDifferencesForTwoCoordinatesThatStartMoving) {
 // Excitations that jump make Newton fail: steps are halved, also behind a switch.
 TEST(CoupledSensitivity, MatchesDifferencesWhereStepsAreHalved) {
   const Model model = readOsim(ShippedElbow::root() + "/models/elbow8.osim");
-  const MusculoskeletalSystem arm(model, ShippedElbow::options());
+  const MusculoskeletalSystem system(model, ShippedElbow::options());
   std::vector<double> times;
-  Eigen::MatrixXd u(12, static_cast<Eigen::Index>(arm.numMuscles()));
+  Eigen::MatrixXd u(12, static_cast<Eigen::Index>(system.numMuscles()));
   for (int k = 0; k < 12; ++k) {
     times.push_back(0.05 * k);
     for (Eigen::Index i = 0; i < u.cols(); ++i) u(k, i) = (k / 3 + i) % 2 == 0 ? 0.02 : 0.9;
   }
   const ExcitationSignal excitation(times, u);
-  const ParameterCatalogue catalogue(model, arm, {Eigen::VectorXd::Constant(1, 0.75), {}});
+  const ParameterCatalogue catalogue(model, system, {Eigen::VectorXd::Constant(1, 0.75), {}});
   SimulationOptions options = forSeconds(0.5);
   options.step = 0.02;
   options.maxIterations = 5;
   const stepping::StepTape tape =
-      tapeOf(arm, excitation, startOf(arm, catalogue.nominal(), excitation, 0), options);
+      tapeOf(system, excitation, startOf(system, catalogue.nominal(), excitation, 0), options);
   EXPECT_GT(timesWithLaw(tape, stepping::StepTape::Time::Law::middle), 0);
   const DiscoveryProblem d = fixtures::compareWithDifferences(
-      arm, ShippedElbow::options(), excitation, catalogue,
+      system, ShippedElbow::options(), excitation, catalogue,
       catalogue.select({"BRA.*", "TRI.radius", "hand.mass", "initial.*"}), options);
   fixtures::tell(d);
   EXPECT_LT(d.worst, 1e-5) << d.of;
@@ -136,7 +136,7 @@ TEST(CoupledSensitivity, AGroupIsTheSumOfItsMembers) {
   const auto members = static_cast<Eigen::Index>(wanted.size());
   wanted.push_back(elbow.catalogue.find("activation.time_scale"));
   const SensitivityTrajectory s =
-      simulateWithSensitivities(elbow.arm, elbow.catalogue, elbow.catalogue.nominal(), wanted,
+      simulateWithSensitivities(elbow.system, elbow.catalogue, elbow.catalogue.nominal(), wanted,
                                 elbow.excitation, {forSeconds(1), false});
   EXPECT_EQ(members, 8);
   const Eigen::VectorXd sum = s.q[0].leftCols(members).rowwise().sum();
@@ -148,7 +148,7 @@ TEST(CoupledSensitivity, AWrapShiftedAlongItsAxisMovesNothing) {
   const ShippedElbow elbow;
   const auto wanted = elbow.catalogue.select({"TRI.translation.*"});
   const SensitivityTrajectory s =
-      simulateWithSensitivities(elbow.arm, elbow.catalogue, elbow.catalogue.nominal(), wanted,
+      simulateWithSensitivities(elbow.system, elbow.catalogue, elbow.catalogue.nominal(), wanted,
                                 elbow.excitation, {forSeconds(2.5), false});
   const Eigen::Vector3d& o = findWrapObject(elbow.model, "TRI").frame.orientation;
   const Eigen::Vector3d axis = Eigen::AngleAxisd(o.x(), Eigen::Vector3d::UnitX()) *
@@ -161,10 +161,10 @@ TEST(CoupledSensitivity, AWrapShiftedAlongItsAxisMovesNothing) {
 TEST(CoupledSensitivity, TheMotionIsThatOfSimulate) {
   const ShippedElbow elbow;
   const SensitivityTrajectory s = simulateWithSensitivities(
-      elbow.arm, elbow.catalogue, elbow.catalogue.nominal(), elbow.catalogue.select({"TRI.radius"}),
-      elbow.excitation, {forSeconds(2), true});
+      elbow.system, elbow.catalogue, elbow.catalogue.nominal(),
+      elbow.catalogue.select({"TRI.radius"}), elbow.excitation, {forSeconds(2), true});
   const Trajectory motion =
-      simulateSetting(elbow.arm, elbow.catalogue.nominal(), elbow.excitation, forSeconds(2));
+      simulateSetting(elbow.system, elbow.catalogue.nominal(), elbow.excitation, forSeconds(2));
   EXPECT_EQ(s.motion.q, motion.q);
   EXPECT_EQ(s.q[0].rows(), motion.q.cols());
 }
@@ -173,12 +173,12 @@ TEST(CoupledSensitivity, OtherIntegratorsAreRefused) {
   const ShippedElbow elbow;
   SimulationOptions options = forSeconds(1);
   options.integrator = Integrator::cvode;
-  EXPECT_THROW(simulateWithSensitivities(elbow.arm, elbow.catalogue, elbow.catalogue.nominal(), {},
-                                         elbow.excitation, {options, false}),
+  EXPECT_THROW(simulateWithSensitivities(elbow.system, elbow.catalogue, elbow.catalogue.nominal(),
+                                         {}, elbow.excitation, {options, false}),
                std::invalid_argument);
   options = forSeconds(-1);
-  EXPECT_THROW(simulateWithSensitivities(elbow.arm, elbow.catalogue, elbow.catalogue.nominal(), {},
-                                         elbow.excitation, {options, false}),
+  EXPECT_THROW(simulateWithSensitivities(elbow.system, elbow.catalogue, elbow.catalogue.nominal(),
+                                         {}, elbow.excitation, {options, false}),
                std::invalid_argument);
 }
 

@@ -22,7 +22,7 @@ const std::vector<std::string> numbers{"band.*",   "cord.*",  "sleeve.*", "ligam
 
 TEST(ForceNumbers, AreCalledAsInOpenSim) {
   const ArmOfSeven c(0.1, ArmOfSeven::coordinates(), false, withMotor(withAll()));
-  const ParameterCatalogue catalogue(c.model, c.arm, {c.start.q, {}});
+  const ParameterCatalogue catalogue(c.model, c.system, {c.start.q, {}});
   const auto expectNumber = [&](const char* name, double value, const char* unit) {
     const ModelParameter& p = catalogue.parameters()[catalogue.find(name)];
     EXPECT_EQ(p.value, value) << name;
@@ -57,7 +57,7 @@ TEST(ForceNumbers, OfWhatDoesNotActAreNotListed) {
   Model model = withMotor(withAll());
   model.pointSprings[1].enabled = false;
   const ArmOfSeven c(0.1, {"pro_sup"}, false, model);
-  const ParameterCatalogue catalogue(c.model, c.arm, {c.start.q, {}});
+  const ParameterCatalogue catalogue(c.model, c.system, {c.start.q, {}});
   EXPECT_TRUE(catalogue.has("band.stiffness"));                  // between ground and hand
   EXPECT_FALSE(catalogue.has("cord.stiffness"));                 // switched off
   EXPECT_FALSE(catalogue.has("sleeve.rotational_stiffness.x"));  // between bodies that rest
@@ -81,7 +81,7 @@ TEST(ForceNumbers, OfTwoOfOneNameAreThoseOfTheOneThatActs) {
         twice(model.actuators, [](CoordinateActuator& a) { a.optimalForce = 777; });
     const std::string name = model.elasticPaths[path].name;
     const ArmOfSeven c(0.1, ArmOfSeven::coordinates(), false, model);
-    const ParameterCatalogue catalogue(c.model, c.arm, {c.start.q, {}});
+    const ParameterCatalogue catalogue(c.model, c.system, {c.start.q, {}});
     for (const ModelParameter& one : catalogue.parameters()) {
       EXPECT_NE(one.value, 777) << one.name;
       EXPECT_EQ(std::count_if(catalogue.parameters().begin(), catalogue.parameters().end(),
@@ -107,7 +107,7 @@ TEST(ForceNumbers, OfTwoOfOneNameAreThoseOfTheOneThatActs) {
 
 TEST(ForceNumbers, SetTheModelWhichIsWrittenWithThem) {
   const ArmOfSeven c(0.1, ArmOfSeven::coordinates(), false, withMotor(withAll()));
-  const ParameterCatalogue catalogue(c.model, c.arm, {c.start.q, {}});
+  const ParameterCatalogue catalogue(c.model, c.system, {c.start.q, {}});
   const auto wanted = catalogue.select(numbers);
   ASSERT_EQ(wanted.size(), 26u);
   const Eigen::VectorXd values = 1.1 * catalogue.values(wanted).array() + 0.001;
@@ -140,12 +140,12 @@ TEST(ForceNumbers, SensitivitiesMatchDifferences) {
   for (const auto& free : {std::vector<std::string>{"elbow_flexion"}, ArmOfSeven::coordinates()}) {
     const ArmOfSeven c(0.2, free, false, withMotor(withAll()));
     const ParameterCatalogue catalogue(
-        c.model, c.arm, {c.start.q, Eigen::VectorXd::Constant(c.start.q.size(), 0.3)});
+        c.model, c.system, {c.start.q, Eigen::VectorXd::Constant(c.start.q.size(), 0.3)});
     SimulationOptions options;
     options.duration = 0.08;
-    options.externalForce = motorForce(c.arm.skeleton().numCoordinates());
+    options.externalForce = motorForce(c.system.skeleton().numCoordinates());
     const fixtures::DiscoveryProblem d = fixtures::compareWithDifferences(
-        c.arm, c.options, c.excitation, catalogue, catalogue.select(numbers), options);
+        c.system, c.options, c.excitation, catalogue, catalogue.select(numbers), options);
     fixtures::tell(d);
     EXPECT_GT(d.compared, 26 * 10);
     EXPECT_LT(d.worst, 1e-5) << d.of;
@@ -156,16 +156,16 @@ TEST(ForceNumbers, TheReactionAtASwungShoulderFollowsThemToo) {
   const ArmOfSeven c(0.2, {"elbow_flexion", "shoulder_elv"}, false, withMotor(withAll()));
   SystemOptions swung = c.options;
   swung.prescribed = {"shoulder_elv"};
-  const MusculoskeletalSystem arm(c.model, swung);
+  const MusculoskeletalSystem system(c.model, swung);
   SimulationOptions options;
   options.duration = 0.08;
   options.externalForce = motorForce(2);
   options.prescribed.add(1, Function{1, SineFunction{0.2, 5, 0.3, 0.8}});
   StartPoint start{c.start.q, Eigen::VectorXd::Zero(2)};
   options.prescribed.place(0, start.q, start.qDot);
-  const ParameterCatalogue catalogue(c.model, arm, start);
+  const ParameterCatalogue catalogue(c.model, system, start);
   const fixtures::DiscoveryProblem d = fixtures::compareWithDifferences(
-      arm, swung, c.excitation, catalogue, catalogue.select(numbers), options);
+      system, swung, c.excitation, catalogue, catalogue.select(numbers), options);
   fixtures::tell(d);
   EXPECT_GT(d.compared, 26 * 5);
   EXPECT_LT(d.worst, 1e-5) << d.of;
@@ -180,8 +180,8 @@ TEST(ForceNumbers, ABatchKnowsTheStrengthOfEachMotor) {
   SimulationOptions options;
   options.duration = 0.15;
   options.externalForce = motorForce(1);
-  const std::vector<LaneJob> jobs{{&weak.arm, &weak.excitation, &weak.start},
-                                  {&strong.arm, &weak.excitation, &weak.start}};
+  const std::vector<LaneJob> jobs{{&weak.system, &weak.excitation, &weak.start},
+                                  {&strong.system, &weak.excitation, &weak.start}};
   const std::vector<Trajectory> both = simulateTogether(jobs, options);
   SimulationOptions doubled = options;
   Eigen::MatrixXd values(8, 1);
@@ -189,7 +189,7 @@ TEST(ForceNumbers, ABatchKnowsTheStrengthOfEachMotor) {
     values(k, 0) = 3 * options.externalForce.controls()[0].values[k];
   }
   doubled.externalForce = {options.externalForce.times(), values};
-  const Trajectory expected = simulate(weak.arm, weak.excitation, weak.start, doubled);
+  const Trajectory expected = simulate(weak.system, weak.excitation, weak.start, doubled);
   EXPECT_GT((both[0].q - both[1].q).cwiseAbs().maxCoeff(), 1e-3);
   EXPECT_LT((both[1].q - expected.q).cwiseAbs().maxCoeff(), 1e-12);
 }

@@ -17,7 +17,7 @@ TEST_P(WholeTrialSensitivity, MatchesDifferencesForEveryParameter) {
   SimulationOptions options;
   options.duration = 4.5;
   const fixtures::DiscoveryProblem d =
-      fixtures::compareWithDifferences(elbow.arm, ShippedElbow::options(), elbow.excitation,
+      fixtures::compareWithDifferences(elbow.system, ShippedElbow::options(), elbow.excitation,
                                        elbow.catalogue, elbow.catalogue.select({"all"}), options);
   fixtures::tell(d);
   EXPECT_GE(d.parameters, 285);

@@ -35,15 +35,15 @@ struct ArmOfSeven {
     return {"elbow_flexion", "shoulder_elv", "elv_angle", "shoulder_rot",
             "pro_sup",       "deviation",    "flexion"};
   }
-  static ExcitationSignal lifting(const MusculoskeletalSystem& arm, double duration) {
+  static ExcitationSignal lifting(const MusculoskeletalSystem& system, double duration) {
     std::vector<double> times;
     for (double t = 0; t < duration + 0.015; t += 0.01) times.push_back(t);
-    Eigen::MatrixXd u(times.size(), arm.numMuscles());
+    Eigen::MatrixXd u(times.size(), system.numMuscles());
     for (Eigen::Index k = 0; k < u.rows(); ++k) {
       for (Eigen::Index i = 0; i < u.cols(); ++i) {
         const double phase = 0.4 * static_cast<double>(i);
         const double wave = std::sin(std::numbers::pi * times[static_cast<std::size_t>(k)] - phase);
-        const bool flexes = arm.muscles()[static_cast<std::size_t>(i)].name.starts_with("B");
+        const bool flexes = system.muscles()[static_cast<std::size_t>(i)].name.starts_with("B");
         u(k, i) = 0.02 + (flexes ? 0.16 : 0.04) * wave * wave;
       }
     }
@@ -54,21 +54,21 @@ struct ArmOfSeven {
                       bool asTree = false, Model given = heldModel())
       : model(std::move(given)),
         options{{std::move(free), {}, asTree}, {}, {}},
-        arm(model, options),
-        excitation(lifting(arm, duration)) {
+        system(model, options),
+        excitation(lifting(system, duration)) {
     const std::map<std::string, double> from = {
         {"elbow_flexion", 0.7}, {"shoulder_elv", 0.8}, {"elv_angle", 0.5}, {"shoulder_rot", -0.3},
         {"pro_sup", 0.1},       {"deviation", 0.05},   {"flexion", -0.05}};
-    Eigen::VectorXd q(arm.skeleton().numCoordinates());
+    Eigen::VectorXd q(system.skeleton().numCoordinates());
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      q[i] = from.at(arm.skeleton().coordinates()[static_cast<std::size_t>(i)].name);
+      q[i] = from.at(system.skeleton().coordinates()[static_cast<std::size_t>(i)].name);
     }
-    start = initialState(arm, q, excitation, 0);
+    start = initialState(system, q, excitation, 0);
   }
 
   Model model;
   SystemOptions options;
-  MusculoskeletalSystem arm;
+  MusculoskeletalSystem system;
   ExcitationSignal excitation;
   SystemState start;
 };

@@ -117,16 +117,16 @@ struct DrawnOf {
         if (muscle.schutte) vary(*muscle.schutte, factor, i % 2 != 0);
         if (muscle.hill) std::visit([&](auto& p) { vary(p, factor, i % 2 != 0); }, *muscle.hill);
       }
-      auto& arm = arms.emplace_back(
+      auto& system = arms.emplace_back(
           std::make_unique<MusculoskeletalSystem>(drawn, ShippedElbow::options()));
       starts.push_back(std::make_unique<SystemState>(
-          initialState(*arm, Eigen::VectorXd::Constant(1, 0.5), excitation, 0)));
-      jobs.push_back({arm.get(), &excitation, starts.back().get()});
+          initialState(*system, Eigen::VectorXd::Constant(1, 0.5), excitation, 0)));
+      jobs.push_back({system.get(), &excitation, starts.back().get()});
     }
   }
 
   Trajectory alone(std::size_t i) const {
-    return simulate(*jobs[i].arm, *jobs[i].excitation, *jobs[i].start, options);
+    return simulate(*jobs[i].system, *jobs[i].excitation, *jobs[i].start, options);
   }
 
   SimulationOptions options;

@@ -40,45 +40,45 @@ TEST(LostPath, EndsAMotionWithMusclePostureAndTime) {
   {
     SystemOptions options;
     options.skeleton.freeCoordinates = {"elbow_flexion"};
-    const MusculoskeletalSystem arm(model, options);
+    const MusculoskeletalSystem system(model, options);
     const Eigen::VectorXd good = Eigen::VectorXd::Constant(1, 1.0);
     const Eigen::VectorXd lost = Eigen::VectorXd::Constant(1, 1.25);
-    EXPECT_EQ(stepping::describeLostPath(arm, good), "");
-    EXPECT_THAT(stepping::describeLostPath(arm, lost),
+    EXPECT_EQ(stepping::describeLostPath(system, good), "");
+    EXPECT_THAT(stepping::describeLostPath(system, lost),
                 AllOf(HasSubstr("muscle 'BRA': its path has no taut string"),
                       HasSubstr("elbow_flexion = 71.6197 deg")));
-    Eigen::MatrixXd u(2, arm.numMuscles());
+    Eigen::MatrixXd u(2, system.numMuscles());
     for (Eigen::Index i = 0; i < u.cols(); ++i) {
-      const bool flexes = arm.muscles()[static_cast<std::size_t>(i)].name.starts_with("B");
+      const bool flexes = system.muscles()[static_cast<std::size_t>(i)].name.starts_with("B");
       u.col(i).setConstant(flexes ? 0.6 : 0.02);
     }
     const ExcitationSignal excitation({0, 1}, u);
     try {
-      initialState(arm, lost, excitation, 0);
+      initialState(system, lost, excitation, 0);
       FAIL() << "starts without a path";
     } catch (const NoStaticEquilibrium& e) {
       EXPECT_THAT(e.what(), AllOf(HasSubstr("at the start, 0 s: muscle 'BRA'"),
                                   HasSubstr("elbow_flexion = 71.6197 deg")));
     }
-    const SystemState start = initialState(arm, good, excitation, 0);
+    const SystemState start = initialState(system, good, excitation, 0);
     for (const Integrator integrator : {Integrator::variational, Integrator::rungeKutta4}) {
       SimulationOptions run;
       run.integrator = integrator;
       run.step = integrator == Integrator::rungeKutta4 ? 2e-4 : 0.01;
       run.duration = 0.3;
       run.maxHalvings = 2;  // a search for a string that does not exist takes long
-      const Trajectory motion = simulate(arm, excitation, start, run);
+      const Trajectory motion = simulate(system, excitation, start, run);
       EXPECT_NE(motion.outcome, Outcome::completed);
       EXPECT_GT(motion.failedAt, 0);
       EXPECT_TRUE(motion.q.allFinite());
       EXPECT_THAT(motion.why, AllOf(HasSubstr("at t = "), HasSubstr("muscle 'BRA'"),
                                     HasSubstr("elbow_flexion = 6")));
     }
-    MusclePath path = arm.muscles()[0].path;
-    for (const SystemMuscle& muscle : arm.muscles()) {
+    MusclePath path = system.muscles()[0].path;
+    for (const SystemMuscle& muscle : system.muscles()) {
       if (muscle.name == "BRA") path = muscle.path;
     }
-    PathLengths lengths(arm.skeleton());
+    PathLengths lengths(system.skeleton());
     lengths.add(findMuscle(model, "BRA"), path);
     lengths.moveTo(lost);
     try {

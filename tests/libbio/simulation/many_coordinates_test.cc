@@ -22,7 +22,7 @@ SimulationOptions stepsOf(Integrator integrator, double step, double duration) {
 }
 
 Trajectory played(const ArmOfSeven& c, const SimulationOptions& o) {
-  Trajectory motion = simulate(c.arm, c.excitation, c.start, o);
+  Trajectory motion = simulate(c.system, c.excitation, c.start, o);
   EXPECT_EQ(motion.outcome, Outcome::completed) << motion.why;
   return motion;
 }
@@ -66,7 +66,7 @@ TEST(ManyCoordinates, IntegratorsAgreeOverLengthFunctions) {
     // fibres meet corners of their curves between the ends of steps
     EXPECT_LT(apart(played(c, stepsOf(Integrator::rungeKutta4, 1e-4, 0.3)), reference), 5e-6);
     EXPECT_LT(apart(played(c, stepsOf(Integrator::variational, 1e-3, 0.3)), reference), 1e-4);
-    EXPECT_LT(energyError(c.arm, played(c, stepsOf(Integrator::rungeKutta4, 1e-4, 0.3))), 1e-6);
+    EXPECT_LT(energyError(c.system, played(c, stepsOf(Integrator::rungeKutta4, 1e-4, 0.3))), 1e-6);
     const ArmOfSeven byPoints(0.3, free);
     EXPECT_LT(apart(tightCvode(byPoints, 0.05, 0.3), reference), 0.05);
   }
@@ -106,7 +106,7 @@ TEST(ManyCoordinates, TheVariationalSchemeIsOfSecondOrder) {
 TEST(ManyCoordinates, EnergyErrorFallsWithTheSquareOfTheStep) {
   const ArmOfSeven c;
   const auto error = [&](Integrator integrator, double step) {
-    return energyError(c.arm, played(c, stepsOf(integrator, step, 1)));
+    return energyError(c.system, played(c, stepsOf(integrator, step, 1)));
   };
   EXPECT_LT(error(Integrator::rungeKutta4, 1e-4), 1e-6);
   const double coarse = error(Integrator::variational, 0.005);
@@ -117,9 +117,9 @@ TEST(ManyCoordinates, EnergyErrorFallsWithTheSquareOfTheStep) {
 
 TEST(ManyCoordinates, JacobianMatchesCentralDifferences) {
   const ArmOfSeven c;
-  stepping::SystemDynamics<Eigen::Dynamic> dynamics(c.arm, c.excitation);
+  stepping::SystemDynamics<Eigen::Dynamic> dynamics(c.system, c.excitation);
   Eigen::VectorXd y = dynamics.pack(c.start);
-  const auto n = static_cast<Eigen::Index>(c.arm.numMuscles());
+  const auto n = static_cast<Eigen::Index>(c.system.numMuscles());
   y.segment(7, 7) << 1.3, -0.4, 0.8, -0.6, 1.1, 0.7, -0.9;
   y.tail(n) *= 1.001;  // away from the kink at fibre speed 0
   fixtures::expectJacobianOfDifferences(dynamics, 0.533, y);
@@ -144,8 +144,8 @@ TEST(ManyCoordinates, NothingIsAllocatedInAStep) {
 TEST(ManyCoordinates, OneAsATreeMovesAsItDoesWithout) {
   const std::vector<std::string> free{ArmOfSeven::coordinates().front()};
   const ArmOfSeven fixed(1, free), tree(1, free, true);
-  ASSERT_FALSE(fixed.arm.tree());
-  ASSERT_TRUE(tree.arm.tree());
+  ASSERT_FALSE(fixed.system.tree());
+  ASSERT_TRUE(tree.system.tree());
   for (const Integrator integrator :
        {Integrator::variational, Integrator::variationalLeft, Integrator::rungeKutta4}) {
     const SimulationOptions o =
@@ -160,9 +160,9 @@ template <int N>
 void expectKernelsAgree() {
   const std::vector<std::string> all = ArmOfSeven::coordinates();
   const ArmOfSeven c(1, {all.begin(), all.begin() + N});
-  ASSERT_TRUE(c.arm.tree());
-  SystemConfiguration<N> fixed(c.arm);
-  SystemConfiguration<Eigen::Dynamic> tree(c.arm);
+  ASSERT_TRUE(c.system.tree());
+  SystemConfiguration<N> fixed(c.system);
+  SystemConfiguration<Eigen::Dynamic> tree(c.system);
   const Eigen::VectorXd from = c.start.q;
   for (int k = 0; k < 5; ++k) {
     const Eigen::VectorXd q = from + 0.1 * k * Eigen::VectorXd::LinSpaced(N, -1, 2);
@@ -177,7 +177,7 @@ void expectKernelsAgree() {
     EXPECT_LT((a.T_qq - b.T_qq).cwiseAbs().maxCoeff(), 1e-11);
     EXPECT_LT((a.V_q - b.V_q).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_LT((a.V_qq - b.V_qq).cwiseAbs().maxCoeff(), 1e-12);
-    for (std::size_t i = 0; i < c.arm.numMuscles(); ++i) {
+    for (std::size_t i = 0; i < c.system.numMuscles(); ++i) {
       EXPECT_NEAR(fixed.length(i).length, tree.length(i).length, 1e-14);
       EXPECT_LT((fixed.length(i).dL_dq - tree.length(i).dL_dq).cwiseAbs().maxCoeff(), 1e-13);
       for (int r = 0; r < N; ++r) {

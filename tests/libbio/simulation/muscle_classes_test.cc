@@ -26,11 +26,12 @@ constexpr std::array classes{"Thelen2003", "Millard2012", "DeGrooteFregly2016", 
 struct ElbowOfClass {
   explicit ElbowOfClass(const std::string& className, const std::string& trialName = "curl_slow")
       : model(converted(className)),
-        arm(model, ShippedElbow::options()),
+        system(model, ShippedElbow::options()),
         trial(readTrial(ShippedElbow::root() + "/emg_data/" + trialName + ".sto", model)),
-        excitation(excitationOf(trial, arm)),
-        catalogue(model, arm,
-                  {startCoordinates(trial, arm, {}), Eigen::VectorXd::Constant(1, startSpeed)}) {}
+        excitation(excitationOf(trial, system)),
+        catalogue(model, system,
+                  {startCoordinates(trial, system, {}), Eigen::VectorXd::Constant(1, startSpeed)}) {
+  }
 
   static Model converted(const std::string& className) {
     Model model = readOsim(ShippedElbow::root() + "/models/elbow8.osim");
@@ -42,14 +43,14 @@ struct ElbowOfClass {
     SimulationOptions options = forSeconds(duration);
     options.integrator = integrator;
     options.step = step;
-    return simulateSetting(arm, catalogue.nominal(), excitation, options);
+    return simulateSetting(system, catalogue.nominal(), excitation, options);
   }
 
   /// [rad/s]; at rest a rigid tendon's force may sit on the kink where it is cut at 0.
   static constexpr double startSpeed = 0.3;
 
   Model model;
-  MusculoskeletalSystem arm;
+  MusculoskeletalSystem system;
   Trial trial;
   ExcitationSignal excitation;
   ParameterCatalogue catalogue;
@@ -87,7 +88,7 @@ TEST(MuscleClasses, SensitivitiesMatchDifferencesForEveryNumberOfAMuscle) {
     const std::vector<std::string> names{"BIClong.*",  "TRIlong.*", "ANC.*",
                                          "TRI.radius", "hand.mass", "initial.*"};
     const DiscoveryProblem d = fixtures::compareWithDifferences(
-        elbow.arm, ShippedElbow::options(), elbow.excitation, elbow.catalogue,
+        elbow.system, ShippedElbow::options(), elbow.excitation, elbow.catalogue,
         elbow.catalogue.select(names), forSeconds(0.2));
     fixtures::tell(d);
     EXPECT_LT(d.worst, 1e-5) << d.of;
@@ -153,8 +154,8 @@ TEST(MuscleClasses, ConversionCarriesWhatBothHaveAndNamesTheRest) {
   convertMuscles(model, "Schutte1993");
   ASSERT_TRUE(model.muscles[0].schutte);
   EXPECT_DOUBLE_EQ(model.muscles[0].schutte->timeScale, 0.1);
-  const MusculoskeletalSystem arm(model, ShippedElbow::options());
-  EXPECT_EQ(arm.numMuscles(), 8u);
+  const MusculoskeletalSystem system(model, ShippedElbow::options());
+  EXPECT_EQ(system.numMuscles(), 8u);
   support::throwsSaying([&] { convertMuscles(model, "Thelen"); },
                         "muscle class 'Thelen' is not known");
 }

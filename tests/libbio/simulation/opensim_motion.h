@@ -51,27 +51,27 @@ inline MotionDifference differenceFrom(const OpenSimMotion& theirs, Integrator i
                                        double step) {
   Model model = readOsim(theirs.model);
   if (theirs.atDefaults) takeDefaults(model);
-  const MusculoskeletalSystem arm(model, {{{"elbow_flexion"}, {}}, {}, {}});
+  const MusculoskeletalSystem system(model, {{{"elbow_flexion"}, {}}, {}, {}});
   const Table motion = readTable(theirs.table);
   const Eigen::VectorXd time = timesOf(motion);
   const auto q = motion.values.col(columnIndex(motion, theirs.angle));
-  const ExcitationSignal excitation = excitationOf(readTrial(theirs.excitations, model), arm);
+  const ExcitationSignal excitation = excitationOf(readTrial(theirs.excitations, model), system);
   SimulationOptions options;
   options.integrator = integrator;
   options.step = step;
   options.duration = time[time.size() - 1];
-  const SystemState start = initialState(arm, Eigen::VectorXd::Constant(1, q[0]), excitation, 0);
-  const Trajectory ours = simulate(arm, excitation, start, options);
+  const SystemState start = initialState(system, Eigen::VectorXd::Constant(1, q[0]), excitation, 0);
+  const Trajectory ours = simulate(system, excitation, start, options);
   EXPECT_EQ(ours.outcome, Outcome::completed) << ours.why;
-  const MuscleReport muscles = reportMuscles(arm, ours);
+  const MuscleReport muscles = reportMuscles(system, ours);
   MotionDifference worst;
   double sum = 0;
   for (Eigen::Index k = 0; k < q.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(std::lround(time[k] / step));
     sum += std::pow(ours.q(0, at) - q[k], 2);
-    for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
+    for (std::size_t i = 0; i < system.numMuscles(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      const std::string& muscle = arm.muscles()[i].name;
+      const std::string& muscle = system.muscles()[i].name;
       const double fibre = motion.values(k, columnIndex(motion, muscle + theirs.fibre));
       const double force = motion.values(k, columnIndex(motion, muscle + theirs.force));
       worst.fibre_m = std::max(worst.fibre_m, std::abs(ours.fibreLength(row, at) - fibre));

@@ -30,11 +30,11 @@ TEST(OpenSimReference, LengthsAndMomentArmsAgreeOverTheWholeRange) {
     const auto column = [&](const char* what) {
       return table.values.col(columnIndex(table, muscle + what)).segment(first, rows);
     };
-    const auto length = column(".length_m"), arm = column(".moment_arm_m"),
+    const auto length = column(".length_m"), system = column(".moment_arm_m"),
                wrapped = column(".wrapped");
     for (Eigen::Index k = 0; k < q.size(); ++k) {
       worstLength = std::max(worstLength, std::abs(sample.length(k, c) - length[k]));
-      worstArm = std::max(worstArm, std::abs(sample.momentArm(k, c) - arm[k]));
+      worstArm = std::max(worstArm, std::abs(sample.momentArm(k, c) - system[k]));
       if (wrapped[k] == 0) {
         worstFree = std::max(worstFree, std::abs(sample.length(k, c) - length[k]));
       }

@@ -27,16 +27,16 @@ struct Drawn {
       Eigen::VectorXd theta = nominal;
       for (double& value : theta) value *= std::exp(spread * random.normal());
       const auto setting = elbow.catalogue.at(selection, theta);
-      auto& arm = arms.emplace_back(
+      auto& system = arms.emplace_back(
           std::make_unique<MusculoskeletalSystem>(setting.model, ShippedElbow::options()));
       starts.push_back(std::make_unique<SystemState>(
-          startOf(*arm, setting, elbow.excitation, options.startTime)));
-      jobs.push_back({arm.get(), &elbow.excitation, starts.back().get()});
+          startOf(*system, setting, elbow.excitation, options.startTime)));
+      jobs.push_back({system.get(), &elbow.excitation, starts.back().get()});
     }
   }
 
   Trajectory alone(std::size_t i) const {
-    return simulate(*jobs[i].arm, *jobs[i].excitation, *jobs[i].start, options);
+    return simulate(*jobs[i].system, *jobs[i].excitation, *jobs[i].start, options);
   }
 
   SimulationOptions options;
@@ -88,15 +88,15 @@ TEST(SimulateTogether, FollowsAFallBeyondFullExtension) {
   const ExcitationSignal none({0, 2}, Eigen::MatrixXd::Zero(2, elbow.excitation.numMuscles()));
   std::vector<SystemState> starts;
   for (const double angle : {1.05, 1.0, 0.95, 0.9}) {
-    starts.push_back(initialState(elbow.arm, Eigen::VectorXd::Constant(1, angle), none, 0));
+    starts.push_back(initialState(elbow.system, Eigen::VectorXd::Constant(1, angle), none, 0));
   }
   std::vector<LaneJob> jobs;
-  for (const SystemState& start : starts) jobs.push_back({&elbow.arm, &none, &start});
+  for (const SystemState& start : starts) jobs.push_back({&elbow.system, &none, &start});
   SimulationOptions options = forSeconds(2);
   options.step = 0.001;  // no step needs to be halved, which a lane leaves to others
   const auto together = simulateTogether(jobs, options);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    const Trajectory alone = simulate(elbow.arm, none, starts[i], options);
+    const Trajectory alone = simulate(elbow.system, none, starts[i], options);
     EXPECT_EQ(together[i].wallSeconds, 0);
     EXPECT_LT(alone.q.minCoeff(), -20 * std::numbers::pi / 180);
     EXPECT_LT((together[i].q - alone.q).cwiseAbs().maxCoeff(), 1e-8);
@@ -124,7 +124,7 @@ TEST(SimulateTogether, KnowsWhatTheShippedArmsLack) {
                                        {&unclamped, &elbow.excitation, &start}};
     const auto together = simulateTogether(jobs, options);
     for (std::size_t i = 0; i < jobs.size(); ++i) {
-      const Trajectory alone = simulate(*jobs[i].arm, elbow.excitation, start, options);
+      const Trajectory alone = simulate(*jobs[i].system, elbow.excitation, start, options);
       ASSERT_EQ(together[i].time.size(), alone.time.size());
       EXPECT_EQ(together[i].wallSeconds, 0);
       EXPECT_LT((together[i].q - alone.q).cwiseAbs().maxCoeff(), 1e-9);
@@ -169,7 +169,7 @@ TEST(SimulateTogether, HalvesStepsAndLeavesFailuresToSimulate) {
   for (const int halvings : {8, 0}) {
     drawn.options.maxHalvings = halvings;
     const auto together = simulateTogether(jobs, drawn.options);
-    const Trajectory alone = simulate(*jobs[1].arm, *jobs[1].excitation, flung, drawn.options);
+    const Trajectory alone = simulate(*jobs[1].system, *jobs[1].excitation, flung, drawn.options);
     EXPECT_EQ(together[1].outcome, alone.outcome);
     EXPECT_EQ(together[1].halvedSteps, alone.halvedSteps);
     EXPECT_EQ(together[1].newtonIterations, alone.newtonIterations);
@@ -198,7 +198,7 @@ TEST(SimulateTogether, LeavesOtherIntegratorsAndArmsToSimulate) {
   options.integrator = Integrator::rungeKutta4;
   options.step = 4e-4;
   expectSame(simulateTogether(drawn.jobs, options).front(),
-             simulate(*drawn.jobs[0].arm, elbow.excitation, *drawn.jobs[0].start, options));
+             simulate(*drawn.jobs[0].system, elbow.excitation, *drawn.jobs[0].start, options));
   const MusculoskeletalSystem both(elbow.model, {{{"elbow_flexion", "pro_sup"}, {}}, {}, {}});
   const SystemState start = initialState(both, Eigen::Vector2d(0.5, 0), elbow.excitation, 0);
   const LaneJob job{&both, &elbow.excitation, &start};
@@ -208,13 +208,13 @@ TEST(SimulateTogether, LeavesOtherIntegratorsAndArmsToSimulate) {
 
 /// Lengths, slopes and curvatures of all paths over the range of the elbow, by the lanes and by
 /// SystemConfiguration, which goes from point to point.
-void expectSamePaths(const MusculoskeletalSystem& arm) {
-  const auto single = lanes::hingeModel(arm);
+void expectSamePaths(const MusculoskeletalSystem& system) {
+  const auto single = lanes::hingeModel(system);
   ASSERT_TRUE(single);
   lanes::HingeModel<lanes::Lanes> four = lanes::lanesFor(*single);
   for (int l = 0; l < lanes::width; ++l) lanes::setLane(four, l, *single);
   const auto view = four.view();
-  SystemConfiguration<1> configuration(arm);
+  SystemConfiguration<1> configuration(system);
   for (int k = 0; k < 120; k += lanes::width) {
     lanes::Real q;
     for (int l = 0; l < lanes::width; ++l) q[l] = 0.02 * (k + l) + 0.003;
@@ -234,7 +234,7 @@ void expectSamePaths(const MusculoskeletalSystem& arm) {
 
 TEST(LanePaths, AreThoseOfTheConfiguration) {
   const ShippedElbow elbow;
-  expectSamePaths(elbow.arm);
+  expectSamePaths(elbow.system);
   // a further point at several places round the triceps' cylinder: in the ulna, so that two spans
   // may touch it; in the humerus, beside its end
   for (int angle = 0; angle < 8; ++angle) {

@@ -17,18 +17,19 @@ namespace {
 using support::degree;
 
 /// Smooth excitations that lift and lower the forearm.
-ExcitationSignal lifting(const MusculoskeletalSystem& arm, double duration = 2.0) {
+ExcitationSignal lifting(const MusculoskeletalSystem& system, double duration = 2.0) {
   std::vector<double> times;
   for (double t = 0; t < duration + 1e-9; t += 0.01) times.push_back(t);
   Eigen::MatrixXd u(static_cast<Eigen::Index>(times.size()),
-                    static_cast<Eigen::Index>(arm.numMuscles()));
+                    static_cast<Eigen::Index>(system.numMuscles()));
   for (Eigen::Index k = 0; k < u.rows(); ++k) {
     for (Eigen::Index i = 0; i < u.cols(); ++i) {
       const double phase = 0.4 * static_cast<double>(i);
       const double wave = std::sin(std::numbers::pi * times[static_cast<std::size_t>(k)] - phase);
       u(k, i) =
-          0.02 + (arm.muscles()[static_cast<std::size_t>(i)].name.starts_with("B") ? 0.16 : 0.04) *
-                     wave * wave;
+          0.02 +
+          (system.muscles()[static_cast<std::size_t>(i)].name.starts_with("B") ? 0.16 : 0.04) *
+              wave * wave;
     }
   }
   return {times, u};
@@ -57,33 +58,34 @@ double rmsDegrees(const Trajectory& a, const Trajectory& b) {
 }
 
 struct Case {
-  MusculoskeletalSystem arm;
+  MusculoskeletalSystem system;
   ExcitationSignal excitation;
   SystemState start;
 };
 
 Case liftingCase(std::vector<std::string> free = {"elbow_flexion"}, double duration = 2.0) {
-  MusculoskeletalSystem arm = elbowArm(free);
-  ExcitationSignal excitation = lifting(arm, duration);
+  MusculoskeletalSystem system = elbowArm(free);
+  ExcitationSignal excitation = lifting(system, duration);
   Eigen::VectorXd q = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(free.size()));
   q[0] = 0.7;
-  SystemState start = initialState(arm, q, excitation, 0);
-  return {std::move(arm), std::move(excitation), std::move(start)};
+  SystemState start = initialState(system, q, excitation, 0);
+  return {std::move(system), std::move(excitation), std::move(start)};
 }
 
 TEST(Coupled, EveryFibreStartsInStaticEquilibrium) {
   const Case c = liftingCase();
-  stepping::SystemDynamics<1> dynamics(c.arm, c.excitation);
+  stepping::SystemDynamics<1> dynamics(c.system, c.excitation);
   Eigen::VectorXd yDot(dynamics.size());
   dynamics.derivative(0, dynamics.pack(c.start), yDot);
-  EXPECT_LT(yDot.tail(static_cast<Eigen::Index>(c.arm.numMuscles())).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT(yDot.tail(static_cast<Eigen::Index>(c.system.numMuscles())).cwiseAbs().maxCoeff(),
+            1e-9);
 }
 
 template <int N>
 void jacobianMatchesDifferences(const Case& c, double speed) {
-  stepping::SystemDynamics<N> dynamics(c.arm, c.excitation);
+  stepping::SystemDynamics<N> dynamics(c.system, c.excitation);
   Eigen::VectorXd y = dynamics.pack(c.start);
-  const auto n = static_cast<Eigen::Index>(c.arm.numMuscles());
+  const auto n = static_cast<Eigen::Index>(c.system.numMuscles());
   y.segment(N, N).setConstant(speed);
   y.tail(n) *= 1.001;  // away from the kink at fibre speed 0
   fixtures::expectJacobianOfDifferences(dynamics, 0.533, y);
@@ -97,7 +99,7 @@ TEST(Coupled, AnalyticJacobianMatchesCentralDifferences) {
 TEST(Coupled, IntegratorsAgreeWithEachOther) {
   const Case c = liftingCase();
   const auto play = [&](Integrator integrator, double step) {
-    return simulate(c.arm, c.excitation, c.start, options(integrator, step));
+    return simulate(c.system, c.excitation, c.start, options(integrator, step));
   };
   const Trajectory reference = play(Integrator::cvode, 0.01);
   ASSERT_EQ(reference.outcome, Outcome::completed) << reference.why;
@@ -115,7 +117,7 @@ double observedOrder(const Case& c, Integrator integrator, const Trajectory& ref
                      const std::vector<double>& steps) {
   std::vector<double> errors;
   for (const double step : steps) {
-    Trajectory t = simulate(c.arm, c.excitation, c.start, options(integrator, step, 1.6));
+    Trajectory t = simulate(c.system, c.excitation, c.start, options(integrator, step, 1.6));
     EXPECT_EQ(t.outcome, Outcome::completed) << t.why;
     double sum = 0;
     const auto every = static_cast<Eigen::Index>(std::lround(0.04 / step));
@@ -141,7 +143,7 @@ TEST(Coupled, SymmetricForcingIsSecondOrderAndLeftForcingFirst) {
     SimulationOptions fine = options(Integrator::cvode, 0.04, 1.6);
     fine.relativeTolerance = 1e-11;
     fine.absoluteTolerance = 1e-13;
-    const Trajectory reference = simulate(c.arm, c.excitation, c.start, fine);
+    const Trajectory reference = simulate(c.system, c.excitation, c.start, fine);
     ASSERT_EQ(reference.outcome, Outcome::completed) << reference.why;
     EXPECT_NEAR(
         observedOrder(c, Integrator::variational, reference, {0.02, 0.01, 0.005, 0.0025, 0.00125}),
@@ -154,7 +156,8 @@ TEST(Coupled, SymmetricForcingIsSecondOrderAndLeftForcingFirst) {
 TEST(Coupled, EnergyBalanceClosesAsTheStepShrinks) {
   const Case c = liftingCase({"elbow_flexion", "shoulder_elv"});
   const auto error = [&](Integrator integrator, double step) {
-    return energyError(c.arm, simulate(c.arm, c.excitation, c.start, options(integrator, step)));
+    return energyError(c.system,
+                       simulate(c.system, c.excitation, c.start, options(integrator, step)));
   };
   EXPECT_LT(error(Integrator::cvode, 0.01), 1e-7);
   EXPECT_LT(error(Integrator::rungeKutta4, 1e-4), 1e-6);
@@ -167,29 +170,29 @@ TEST(Coupled, EnergyBalanceClosesAsTheStepShrinks) {
 TEST(Coupled, RungeKuttaBlowsUpWhereTheVariationalIntegratorHolds) {
   const Case c = liftingCase();
   const Trajectory explicitly =
-      simulate(c.arm, c.excitation, c.start, options(Integrator::rungeKutta4, 0.002));
+      simulate(c.system, c.excitation, c.start, options(Integrator::rungeKutta4, 0.002));
   EXPECT_EQ(explicitly.outcome, Outcome::unstable);
   EXPECT_NE(explicitly.why.find("unstable at t ="), std::string::npos);
   EXPECT_EQ(explicitly.time.size(), static_cast<std::size_t>(explicitly.q.cols()));
   for (const double step : {0.01, 0.02, 0.05}) {
     const Trajectory variational =
-        simulate(c.arm, c.excitation, c.start, options(Integrator::variational, step));
+        simulate(c.system, c.excitation, c.start, options(Integrator::variational, step));
     EXPECT_EQ(variational.outcome, Outcome::completed) << variational.why;
   }
 }
 
 TEST(Coupled, SuddenExcitationsAreSurvivedByHalvingSteps) {
-  const MusculoskeletalSystem arm = elbowArm();
+  const MusculoskeletalSystem system = elbowArm();
   std::vector<double> times;
-  Eigen::MatrixXd u(40, static_cast<Eigen::Index>(arm.numMuscles()));
+  Eigen::MatrixXd u(40, static_cast<Eigen::Index>(system.numMuscles()));
   for (int k = 0; k < 40; ++k) {
     times.push_back(0.05 * k);
     for (Eigen::Index i = 0; i < u.cols(); ++i) u(k, i) = (k / 3 + i) % 2 == 0 ? 0.0 : 1.0;
   }
   const ExcitationSignal excitation(times, u);
-  const SystemState start = initialState(arm, Eigen::VectorXd::Constant(1, 1.2), excitation, 0);
+  const SystemState start = initialState(system, Eigen::VectorXd::Constant(1, 1.2), excitation, 0);
   const Trajectory motion =
-      simulate(arm, excitation, start, options(Integrator::variational, 0.02, 1.9));
+      simulate(system, excitation, start, options(Integrator::variational, 0.02, 1.9));
   EXPECT_EQ(motion.outcome, Outcome::completed) << motion.why;
   EXPECT_TRUE(motion.q.allFinite());
 }
@@ -199,7 +202,7 @@ TEST(Coupled, AStepThatCannotBeSolvedIsAResultWithTimeAndReason) {
   SimulationOptions o = options(Integrator::variational, 0.05);
   o.maxIterations = 1;
   o.maxHalvings = 2;
-  const Trajectory motion = simulate(c.arm, c.excitation, c.start, o);
+  const Trajectory motion = simulate(c.system, c.excitation, c.start, o);
   EXPECT_EQ(motion.outcome, Outcome::noSolution);
   EXPECT_NE(motion.why.find("no solution at t = 0 s"), std::string::npos) << motion.why;
   EXPECT_EQ(motion.time.size(), 1u);
@@ -207,10 +210,10 @@ TEST(Coupled, AStepThatCannotBeSolvedIsAResultWithTimeAndReason) {
 
 // Half the shift, an eighth of the error in what has two derivatives, a quarter in what has one.
 TEST(SystemConfiguration, ShiftedALittleItIsThatOfThePlaceToItsOrder) {
-  const MusculoskeletalSystem arm = elbowArm({"elbow_flexion", "shoulder_elv"});
+  const MusculoskeletalSystem system = elbowArm({"elbow_flexion", "shoulder_elv"});
   const Eigen::Vector2d q(1.1, 0.4), along(1, -0.7);
   const auto errors = [&](double size) {
-    SystemConfiguration<2> shifted(arm), there(arm);
+    SystemConfiguration<2> shifted(system), there(system);
     shifted.moveTo(q);
     shifted.shift(size / 2 * along);
     shifted.shift(size / 2 * along);
@@ -218,7 +221,7 @@ TEST(SystemConfiguration, ShiftedALittleItIsThatOfThePlaceToItsOrder) {
     const auto &a = shifted.inertia(), &b = there.inertia();
     double third = std::abs(a.potential - b.potential) + (a.massMatrix - b.massMatrix).norm();
     double second = (a.dV - b.dV).norm() + (a.dM[0] - b.dM[0]).norm() + (a.dM[1] - b.dM[1]).norm();
-    for (std::size_t i = 0; i < arm.numMuscles(); ++i) {
+    for (std::size_t i = 0; i < system.numMuscles(); ++i) {
       third += std::abs(shifted.length(i).length - there.length(i).length);
       second += (shifted.length(i).dL_dq - there.length(i).dL_dq).norm();
     }
@@ -237,7 +240,7 @@ TEST(Coupled, NothingIsAllocatedInAStep) {
     const double step = integrator == Integrator::rungeKutta4 ? 1e-4 : 0.01;
     const auto count = [&](double duration) {
       const long before = support::allocations();
-      simulate(c.arm, c.excitation, c.start, options(integrator, step, duration));
+      simulate(c.system, c.excitation, c.start, options(integrator, step, duration));
       return support::allocations() - before;
     };
     count(0.1);
@@ -249,8 +252,8 @@ TEST(Coupled, NothingIsAllocatedInAStep) {
 TEST(SimulateTogether, AllocatesNothingInAStep) {
   const fixtures::ShippedElbow elbow("elbow8_passive");
   const SystemState start =
-      initialState(elbow.arm, Eigen::VectorXd::Constant(1, 0.5), elbow.excitation, 0);
-  const std::vector<LaneJob> jobs(3, {&elbow.arm, &elbow.excitation, &start});
+      initialState(elbow.system, Eigen::VectorXd::Constant(1, 0.5), elbow.excitation, 0);
+  const std::vector<LaneJob> jobs(3, {&elbow.system, &elbow.excitation, &start});
   SimulationOptions o;
   o.externalForce = ExternalForce({0.5, 1, 2}, Eigen::Vector3d(0, 0.8, -0.3));
   for (const LaneInstructions instructions : {LaneInstructions::best, LaneInstructions::plain}) {
@@ -264,7 +267,7 @@ TEST(SimulateTogether, AllocatesNothingInAStep) {
       EXPECT_EQ(motions.front().wallSeconds, 0) << "went by itself";
       const Eigen::VectorXd angle = motions.front().q.row(0);
       switchesMet = std::count_if(
-          elbow.arm.switches().begin(), elbow.arm.switches().end(), [&](const PathSwitch& s) {
+          elbow.system.switches().begin(), elbow.system.switches().end(), [&](const PathSwitch& s) {
             return s.distance(angle.minCoeff()) * s.distance(angle.maxCoeff()) < 0;
           });
       return taken;
@@ -284,7 +287,7 @@ TEST(Coupled, TheProgressCallbackCanStopARun) {
     const double step = integrator == Integrator::rungeKutta4 ? 1e-4 : 1e-3;
     SimulationOptions o = options(integrator, step);
     o.progress = [](double t) { return t < 0.04995; };
-    const Trajectory motion = simulate(c.arm, c.excitation, c.start, o);
+    const Trajectory motion = simulate(c.system, c.excitation, c.start, o);
     EXPECT_EQ(motion.outcome, Outcome::stopped);
     EXPECT_NEAR(motion.time.back(), 0.05, 1e-9);
     EXPECT_EQ(motion.q.cols(), std::lround(0.05 / step) + 1);
@@ -298,7 +301,7 @@ TEST(Coupled, AMotionIsTheSameWheneverItBegins) {
                                       Integrator::rungeKutta4, Integrator::cvode}) {
     SimulationOptions o =
         options(integrator, integrator == Integrator::rungeKutta4 ? 2.5e-4 : 0.01, 1.0);
-    const Trajectory atZero = simulate(c.arm, c.excitation, c.start, o);
+    const Trajectory atZero = simulate(c.system, c.excitation, c.start, o);
     for (const double begin : {-7.0, -1.0, 1000.0}) {
       std::vector<double> times = c.excitation.times();
       Eigen::MatrixXd values(times.size(), c.excitation.numMuscles());
@@ -310,7 +313,7 @@ TEST(Coupled, AMotionIsTheSameWheneverItBegins) {
       }
       for (double& t : times) t += begin;
       o.startTime = begin;
-      const Trajectory moved = simulate(c.arm, {times, values}, c.start, o);
+      const Trajectory moved = simulate(c.system, {times, values}, c.start, o);
       ASSERT_EQ(moved.q.cols(), atZero.q.cols());
       EXPECT_LT((moved.q - atZero.q).cwiseAbs().maxCoeff(), 1e-8) << begin;
     }
@@ -323,7 +326,7 @@ TEST(Coupled, BrokenRulesAreNamed) {
     SimulationOptions o = options(Integrator::variational, 0.01);
     SystemState start = c.start;
     change(o, start);
-    EXPECT_THROW(simulate(c.arm, c.excitation, start, o), std::invalid_argument);
+    EXPECT_THROW(simulate(c.system, c.excitation, start, o), std::invalid_argument);
   };
   fails([](auto& o, auto&) { o.step = 0; });
   fails([](auto& o, auto&) { o.step = std::nan(""); });
@@ -339,7 +342,7 @@ TEST(Coupled, BrokenRulesAreNamed) {
                std::invalid_argument);
   EXPECT_THROW(ExcitationSignal({0, 1}, Eigen::MatrixXd::Constant(2, 8, std::nan(""))),
                std::invalid_argument);
-  EXPECT_THROW(initialState(c.arm, Eigen::VectorXd::Zero(2), c.excitation, 0),
+  EXPECT_THROW(initialState(c.system, Eigen::VectorXd::Zero(2), c.excitation, 0),
                std::invalid_argument);
 }
 

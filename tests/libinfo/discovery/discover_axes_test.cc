@@ -322,7 +322,7 @@ TEST(Axes, AnUnknownForceIsToldWithItsAxis) {
   TwoMasses data;
   data.draw([](double, double q, double) { return -8 * q * q * q; });
   Options options;
-  options.outputSd = Whitening(VectorXd::Constant(2, kOutput));
+  options.sds = Whitening(VectorXd::Constant(2, kOutput));
   const Verdict v = run(data, options);
   EXPECT_EQ(v.finding, Finding::unknown) << v.sentence;
   ASSERT_TRUE(v.unknown);

@@ -147,7 +147,7 @@ class Nameless : public LinearDisagreement {
 TEST(Formula, IsRacedWhereTheDataOfferIt) {
   const LinearDisagreement data = withForce(3, [](double) { return -2.0; });
   Options options;
-  options.outputSd = kOutput;
+  options.sds = kOutput;
   const Verdict plain = run(Nameless(data, false), options);
   EXPECT_EQ(plain.finding, Finding::unknown) << plain.sentence;
   EXPECT_FALSE(plain.formula);

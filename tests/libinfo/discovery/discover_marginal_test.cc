@@ -180,7 +180,7 @@ TEST(MarginalFit, IsNotBiasedTowardsTooLittleDamping) {
 TEST(MarginalFit, IsWhatAVerdictEstimatesWith) {
   const Damped data = drawn(3, 0);
   Options options;
-  options.outputSd = kOutput;
+  options.sds = kOutput;
   options.latentTime = kTime;
   options.latentScale = 1;
   options.latentTolerance = 2;

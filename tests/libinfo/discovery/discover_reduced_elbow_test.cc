@@ -10,7 +10,7 @@ using namespace info::discover;
 
 Verdict found(const reduced::Elbow& elbow) {
   Options options;
-  options.outputSd = 0.5 * 0.017453292519943295;
+  options.sds = 0.5 * 0.017453292519943295;
   options.latentTolerance = 0.02;
   options.heldOut = {2};
   return run(elbow, options);

@@ -22,7 +22,7 @@ using support::kTime;
 // What the engine is told of drawn().
 Options optionsOfDrawn() {
   Options options;
-  options.outputSd = kOutput;
+  options.sds = kOutput;
   options.latentScale = 1;
   options.latentTime = kTime;
   options.latentTolerance = 0.6;
@@ -62,7 +62,7 @@ TEST(Discover, FindsATrialStrangeThatWasHeldOutAndIsOfAnotherModel) {
   VectorXd truth = nominalValues(data);
   data.draw(4, truth, kOutput, 0, kTime);
   Options options;
-  options.outputSd = kOutput;
+  options.sds = kOutput;
   options.latentScale = 1;
   options.latentTime = kTime;
   options.heldOut = {2};
@@ -93,7 +93,7 @@ TEST(Discover, FitsHeldOutTrialsOnceWhereNothingIsMissing) {
   Counted data(3, 80);
   data.draw(4, nominalValues(data), kOutput, 0, kTime);
   Options options;
-  options.outputSd = kOutput;
+  options.sds = kOutput;
   options.latentScale = 1;
   options.latentTime = kTime;
   options.heldOut = {2};
@@ -114,7 +114,7 @@ TEST(Discover, GivesANameNoProbabilityWhereWhatWasHeldOutIsFarOff) {
     more.draw(4, truth, kOutput, 0, kTime);
     data.measure(2, more.measured(2));
     Options options;
-    options.outputSd = kOutput;
+    options.sds = kOutput;
     options.latentScale = 1;
     options.latentTime = kTime;
     options.heldOut = {2};
@@ -145,7 +145,7 @@ TEST(Discover, LooksOnceMoreWhereWhatWasHeldOutIsOff) {
     return data;
   };
   Options options;
-  options.outputSd = kOutput;
+  options.sds = kOutput;
   options.latentScale = 1;
   options.latentTime = kTime;
   options.latentTolerance = 0.1;
@@ -224,7 +224,7 @@ TEST(Discover, GoesOnWithoutACandidateThatCannotBeSimulated) {
 
 TEST(Discover, SaysThatTheModelCannotBeSimulated) {
   Options options;
-  options.outputSd = kOutput;
+  options.sds = kOutput;
   EXPECT_THROW(run(Fragile(drawn(5, 2, 1.1), true), options), std::domain_error);
 }
 
@@ -272,7 +272,7 @@ TEST(Discover, GoesOnWhereAnEffectStandsByTheLatentForceOnly) {
 TEST(Discover, StopsWhenToldTo) {
   const LinearDisagreement data = drawn(5, 2, 1.1);
   Options options;
-  options.outputSd = kOutput;
+  options.sds = kOutput;
   options.progress = [](const Progress& p) { return p.stage < Stage::race; };
   const Verdict v = run(data, options);
   EXPECT_EQ(v.reached, Stage::localise);
@@ -285,7 +285,7 @@ TEST(Discover, StopsWhenToldTo) {
 TEST(Discover, TellsWhatItHasRacedWhenItIsStopped) {
   const LinearDisagreement data = drawn(5, 2, 1.1);
   Options options;
-  options.outputSd = kOutput;
+  options.sds = kOutput;
   const Verdict whole = run(data, options);
   ASSERT_EQ(whole.effects.size(), 1U);
   options.progress = [](const Progress& p) { return p.stage < Stage::decide; };
@@ -324,7 +324,7 @@ TEST(RunAtShorterSteps, HalvesTheStepUntilItNoLongerMattersOrIsTooShort) {
     steps.push_back(step);
     data.emplace(drawn(5, 2, 1.1), 1000 * step * step);
     Options options;
-    options.outputSd = kOutput;
+    options.sds = kOutput;
     return Attempt{*data, options};
   };
   const SteppedVerdict found = runAtShorterSteps(attempt, 0.04, 0.003);
@@ -332,7 +332,7 @@ TEST(RunAtShorterSteps, HalvesTheStepUntilItNoLongerMattersOrIsTooShort) {
   EXPECT_EQ(found.step, 0.01);
   EXPECT_NE(found.verdict.finding, Finding::numerical);
   EXPECT_NEAR(found.verdict.numericalError, 0.1, 1e-9);
-  EXPECT_EQ(found.options.outputSd, kOutput);
+  EXPECT_EQ(found.options.sds, kOutput);
 
   steps.clear();
   const SteppedVerdict tooShort = runAtShorterSteps(attempt, 0.04, 0.03);
@@ -354,7 +354,7 @@ TEST(RunAtShorterSteps, GoesOnWhereTheModelCannotBeSimulatedAtALongStep) {
     steps.push_back(step);
     data.emplace(drawn(5, 2, 1.1), step > 0.015);
     Options options;
-    options.outputSd = kOutput;
+    options.sds = kOutput;
     return Attempt{*data, options};
   };
   EXPECT_EQ(runAtShorterSteps(attempt, 0.04, 0.003).step, 0.01);

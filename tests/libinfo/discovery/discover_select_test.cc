@@ -136,7 +136,7 @@ class Astray : public DiscoveryProblem {
 Verdict verdictOn(const Astray& data, double latentTolerance = 5,  // 5 move outputs by kSigma
                   WarmStart* draft = nullptr) {
   Options options;
-  options.outputSd = kSigma;
+  options.sds = kSigma;
   options.latentScale = 1;
   options.latentTolerance = latentTolerance;
   return run(data, options, draft);

@@ -106,7 +106,7 @@ class Benchmark {
         leaveOut_ ? set.explaining() : std::vector<std::string>{};
     const reduced::Elbow elbow(std::move(set.trials), lacking, step_);
     Options options;
-    if (known_) options.outputSd = recipe.outputNoise;
+    if (known_) options.sds = recipe.outputNoise;
     options.heldOut = {plan_.trials - 1};
     options.latentTolerance = plan_.emgNoise > 0 ? 2 * plan_.emgNoise : 0.02;
     const auto begin = std::chrono::steady_clock::now();

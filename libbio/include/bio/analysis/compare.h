@@ -18,7 +18,7 @@ struct Deviation {
 /// Difference at the rows of `motion`; the reference is interpolated by cubics through values and
 /// speeds. Rows outside the time range of the reference are left out.
 /// @throws std::invalid_argument if no coordinate is a rotation, or no row is covered
-Deviation sd(const MusculoskeletalSystem& arm, const Trajectory& motion,
+Deviation sd(const MusculoskeletalSystem& system, const Trajectory& motion,
              const Trajectory& reference);
 
 struct CompareOptions {
@@ -30,7 +30,7 @@ struct CompareOptions {
   double startTime = 0;              ///< [s]
   double duration = 0;               ///< [s] > 0
   ExternalForce externalForce = {};  ///< empty: no external force
-  PrescribedMotion prescribed = {};  ///< of the arm's prescribed coordinates
+  PrescribedMotion prescribed = {};  ///< of the system's prescribed coordinates
   int timings = 5;  ///< least number of runs of each cell, whose median is reported; ≥ 1
   double usefulError = 0.017453293;  ///< RMS below which a step counts as stable [rad] > 0
   double stepResolution = 1.02;      ///< ratio at which the bisection for a step ends, > 1
@@ -115,7 +115,8 @@ struct Comparison {
 /// everything else is empty.
 /// @throws std::invalid_argument an empty list or one with duplicates, steps that are not > 0 and
 ///   rising, and what simulate() throws
-Comparison compareIntegrators(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
-                              const SystemState& start, const CompareOptions& options);
+Comparison compareIntegrators(const MusculoskeletalSystem& system,
+                              const ExcitationSignal& excitation, const SystemState& start,
+                              const CompareOptions& options);
 
 }  // namespace bio

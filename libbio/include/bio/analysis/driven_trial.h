@@ -16,7 +16,8 @@ namespace bio {
 
 /// The trial for a model without EMG parameters: the excitations that drove the muscles, with rows
 /// at all their corners, and the measurements.
-Table drivenTable(const Trial& trial, const MusculoskeletalSystem& arm, const EmgMapping& mapping);
+Table drivenTable(const Trial& trial, const MusculoskeletalSystem& system,
+                  const EmgMapping& mapping);
 
 /// The trial that a replay reads from drivenTable().
 /// @param recorded  has the courses of prescribed coordinates

@@ -32,17 +32,17 @@ struct EnsembleRun {
 /// touch takes most of the time.
 class SystemBatch {
  public:
-  /// @param catalogue   made of `arm`; must outlive the ensemble
+  /// @param catalogue   made of `system`; must outlive the ensemble
   /// @param trial       excitations as recorded
   /// @param coordinate observed coordinate, must be free
   /// @param measured measured values of that coordinate, if any
   /// @param course      times within the trial [s], rising
   /// @throws std::invalid_argument what simulate() throws, if the coordinate is not free, or if the
   ///   model's own motion does not reach the end of the trial
-  SystemBatch(const ParameterCatalogue& catalogue, const SystemOptions& arm, ExcitationSignal trial,
-              const std::string& coordinate, std::optional<MeasuredChannel> measured,
-              std::vector<double> course, std::vector<std::size_t> selection,
-              const SimulationOptions& options);
+  SystemBatch(const ParameterCatalogue& catalogue, const SystemOptions& system,
+              ExcitationSignal trial, const std::string& coordinate,
+              std::optional<MeasuredChannel> measured, std::vector<double> course,
+              std::vector<std::size_t> selection, const SimulationOptions& options);
 
   const std::vector<double>& course() const { return course_; }
   /// The run with the model's own parameters.
@@ -61,13 +61,13 @@ class SystemBatch {
   EnsembleRun describe(const Trajectory& motion) const;
 
   const ParameterCatalogue* catalogue_;
-  SystemOptions armOptions_;
+  SystemOptions systemOptions_;
   ExcitationSignal trial_;
   std::optional<MeasuredChannel> measured_;
   std::vector<double> course_;
   std::vector<std::size_t> selection_;
   SimulationOptions options_;
-  MusculoskeletalSystem arm_;        ///< nominal
+  MusculoskeletalSystem system_;     ///< nominal
   ExcitationSignal driven_;          ///< nominal
   bool drawsEmg_;                    ///< a parameter of the selection changes the excitations
   std::vector<std::string> shaped_;  ///< muscles whose paths depend on the selection

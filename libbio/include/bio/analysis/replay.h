@@ -14,18 +14,18 @@
 /// Inputs, initial state and errors of simulating a recorded trial.
 namespace bio {
 
-/// The trial's excitations in the order of the arm's muscles.
+/// The trial's excitations in the order of the system's muscles.
 /// @throws std::invalid_argument if the trial lacks one of them
-ExcitationSignal excitationOf(const Trial& trial, const MusculoskeletalSystem& arm);
+ExcitationSignal excitationOf(const Trial& trial, const MusculoskeletalSystem& system);
 
 /// The external force of a trial; none if the trial has no such column.
 /// @throws std::invalid_argument if it acts on a coordinate that is not free
-ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& arm);
+ExternalForce externalForceOf(const Trial& trial, const MusculoskeletalSystem& system);
 
 /// The motion of the system's prescribed coordinates in a trial: what that gives, else the model's
 /// own functions of time.
 /// @throws std::invalid_argument if the trial lacks one of them
-PrescribedMotion prescribedMotionOf(const Trial& trial, const MusculoskeletalSystem& arm);
+PrescribedMotion prescribedMotionOf(const Trial& trial, const MusculoskeletalSystem& system);
 
 /// Inputs to the simulation of a recorded trial, for one system.
 struct RecordedTrial {
@@ -56,7 +56,7 @@ std::vector<std::string> roughnessRemarks(const Trial& trial, const Model& model
 /// else the default.
 /// @throws std::invalid_argument for a name that is not free, or is prescribed, or a value that is
 ///   not finite
-Eigen::VectorXd startCoordinates(const Trial& trial, const MusculoskeletalSystem& arm,
+Eigen::VectorXd startCoordinates(const Trial& trial, const MusculoskeletalSystem& system,
                                  const std::map<std::string, double>& given);
 
 /// Initial state of a trial's simulation, and its source.
@@ -72,7 +72,8 @@ const char* name(TrialBeginning::From from);  ///< "given", "model", "measured",
 /// model (Model::fitted), if it contains the trial's SHA-256; else the first measured value, else
 /// the default, at rest.
 /// @throws std::invalid_argument as startCoordinates does
-TrialBeginning beginningOf(const Trial& trial, const Model& model, const MusculoskeletalSystem& arm,
+TrialBeginning beginningOf(const Trial& trial, const Model& model,
+                           const MusculoskeletalSystem& system,
                            const std::map<std::string, double>& given);
 
 /// Time step [s]: the one given, else, for the variational integrators, the one with which the
@@ -91,7 +92,7 @@ struct MeasuredError {
   Eigen::Index count = 0;  ///< measured values compared
 };
 /// @throws std::invalid_argument if the coordinate is not free, or no measured time is covered
-MeasuredError compareWithMeasured(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
+MeasuredError compareWithMeasured(const MusculoskeletalSystem& system, const Trajectory& trajectory,
                                   const MeasuredChannel& measured);
 
 /// Error against any other measured channel.
@@ -115,12 +116,12 @@ struct TrialReplay {
 ///   trial
 /// @param beginning from beginningOf()
 /// @throws what excitationOf, externalForceOf, initialState and simulate throw
-TrialReplay replayTrial(const MusculoskeletalSystem& arm, const Trial& trial,
+TrialReplay replayTrial(const MusculoskeletalSystem& system, const Trial& trial,
                         SimulationOptions options, TrialBeginning beginning);
 
 /// One sentence for each free coordinate that leaves its range in the model, with the time; only
 /// the model's passive forces limit it.
-std::vector<std::string> rangeRemarks(const MusculoskeletalSystem& arm,
+std::vector<std::string> rangeRemarks(const MusculoskeletalSystem& system,
                                       const Trajectory& trajectory);
 
 /// First time at which a motion leaves the valid range of its model.
@@ -131,16 +132,17 @@ struct LeftRange {
 };
 /// The first time at which a free coordinate is outside its range by more than a tenth of it (and
 /// 1° or 1 mm), or a fibre outside 0.2 to 2 optimal lengths; nothing if there is none.
-std::optional<LeftRange> leftRange(const MusculoskeletalSystem& arm, const Trajectory& trajectory);
+std::optional<LeftRange> leftRange(const MusculoskeletalSystem& system,
+                                   const Trajectory& trajectory);
 
 /// States as OpenSim 4 names them: value and speed of every coordinate of the model (locked and
 /// coupled ones too), activation and fiber_length of every simulated muscle; radians and metres.
-Table statesTable(const Model& model, const MusculoskeletalSystem& arm,
+Table statesTable(const Model& model, const MusculoskeletalSystem& system,
                   const Trajectory& trajectory);
 
 /// Tendon forces [N], one column per muscle, and NAME.reaction [N·m] or [N] of each prescribed
 /// coordinate: what keeps it on its course.
-Table forcesTable(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
+Table forcesTable(const MusculoskeletalSystem& system, const Trajectory& trajectory,
                   const MuscleReport& report);
 
 }  // namespace bio

@@ -32,8 +32,9 @@ struct StudiedTrial {
 /// measured; if it was not, at every step.
 /// @param simulation  integrator, step and progress
 /// @throws std::invalid_argument what excitationOf, externalForceOf and prescribedMotionOf throw
-StudiedTrial studiedTrial(const Trial& trial, const Model& model, const MusculoskeletalSystem& arm,
-                          const StartPoint& start, SimulationOptions simulation);
+StudiedTrial studiedTrial(const Trial& trial, const Model& model,
+                          const MusculoskeletalSystem& system, const StartPoint& start,
+                          SimulationOptions simulation);
 
 /// Channels by the names that they have as columns of a trial, with the noise of their samples.
 /// @param named  (name, standard deviation in unitOf() > 0) each
@@ -41,7 +42,7 @@ StudiedTrial studiedTrial(const Trial& trial, const Model& model, const Musculos
 ///   > 0
 std::vector<ChannelCandidate> observedChannels(
     const std::vector<std::pair<std::string, double>>& named, const Model& model,
-    const MusculoskeletalSystem& arm);
+    const MusculoskeletalSystem& system);
 
 /// The measured quantities, and the parameters.
 struct SensitivityQuestion {
@@ -73,13 +74,13 @@ LocalSensitivity localSensitivity(const std::vector<StudiedTrial>& trials,
                                   const std::function<void(double)>& progress = {});
 
 /// usualChannels() without what is observed already.
-std::vector<ChannelCandidate> furtherChannels(const MusculoskeletalSystem& arm,
+std::vector<ChannelCandidate> furtherChannels(const MusculoskeletalSystem& system,
                                               const SensitivityQuestion& question);
 /// Gains of each further channel beside what is observed, at the same times.
-/// @param arm    of question.system
+/// @param system    of question.system
 /// @param known  from localSensitivity()
 std::vector<ChannelGain> furtherGains(const std::vector<StudiedTrial>& trials,
-                                      const MusculoskeletalSystem& arm,
+                                      const MusculoskeletalSystem& system,
                                       const SensitivityQuestion& question,
                                       const ParameterInformation& known);
 /// Whether channelGains() would take longer than a second or two.

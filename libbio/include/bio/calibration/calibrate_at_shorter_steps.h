@@ -36,7 +36,7 @@ struct SteppedCalibration {
 /// trials say.
 /// @param shortest [s] > 0; infinity: at the given step only
 /// @throws std::invalid_argument what TrialSet and calibrate throw
-SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptions& arm,
+SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptions& system,
                                            const std::vector<Trial>& training,
                                            const std::vector<Trial>& heldOut,
                                            const CalibrationOptions& options, double shortest);

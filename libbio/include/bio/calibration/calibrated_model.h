@@ -23,12 +23,12 @@ struct CalibratedModel {
   double rms(bool heldOut) const;
 };
 
-/// @param arm options with which both sets were constructed
+/// @param system options with which both sets were constructed
 /// @param heldOut     null: none
 /// @param simulation  integrator and step of the calibration
 /// @param calibration with an estimate
 CalibratedModel calibratedModel(const TrialSet& training, const TrialSet* heldOut,
-                                const SystemOptions& arm, const SimulationOptions& simulation,
+                                const SystemOptions& system, const SimulationOptions& simulation,
                                 const Calibration& calibration);
 
 }  // namespace bio

@@ -60,10 +60,10 @@ class TrialSet {
   ///   (observed_motion.h), an unknown name, one given twice or two
   ///   that set the same value, an initial state as common parameter of several trials, another
   ///   integrator
-  TrialSet(const Model& model, const SystemOptions& arm, std::vector<Trial> trials,
+  TrialSet(const Model& model, const SystemOptions& system, std::vector<Trial> trials,
            const TrialSetOptions& options);
 
-  const MusculoskeletalSystem& arm() const { return *arm_; }
+  const MusculoskeletalSystem& system() const { return *system_; }
   /// With which it was made of the model.
   const SystemOptions& options() const { return options_; }
   const std::vector<Trial>& trials() const { return trials_; }
@@ -143,7 +143,7 @@ class TrialSet {
   std::vector<Trial> trials_;
   int threads_;
   SystemOptions options_;
-  std::unique_ptr<const MusculoskeletalSystem> arm_;
+  std::unique_ptr<const MusculoskeletalSystem> system_;
   std::vector<std::unique_ptr<const ParameterCatalogue>> catalogues_;  ///< one per trial
   std::vector<std::size_t> selection_;
   /// Indices of each trial's initial state and latent excitations that are estimated, and

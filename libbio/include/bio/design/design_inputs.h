@@ -45,12 +45,12 @@ struct DesignLimits {
 /// (info::BoundedProfiles). Everything else of the trial is kept.
 class DesignInputs {
  public:
-  /// @param limits         of coordinates that are free in `arm`
+  /// @param limits         of coordinates that are free in `system`
   /// @param measuredTimes  rows of every designed trial [s]
   /// @throws std::invalid_argument for a limit out of range, a coordinate that is not free or is
   ///   named twice, an unknown muscle, a muscle in two groups, no input, knots that are not > 0
   ///   apart
-  DesignInputs(const MusculoskeletalSystem& arm, Trial trial, double startTime, double duration,
+  DesignInputs(const MusculoskeletalSystem& system, Trial trial, double startTime, double duration,
                DesignLimits limits, std::vector<MuscleGroup> groups, double knotInterval,
                std::vector<double> measuredTimes);
 
@@ -95,6 +95,6 @@ class DesignInputs {
 /// course of prescribed coordinates, experimental conditions, and what is predicted of the
 /// channels that will be measured; in radians and metres.
 /// @param trial  with the predictions as measured
-Table plannedTable(const MusculoskeletalSystem& arm, const Trial& trial);
+Table plannedTable(const MusculoskeletalSystem& system, const Trial& trial);
 
 }  // namespace bio

@@ -41,23 +41,23 @@ struct GivenLimits {
 /// Sets the limits of all free coordinates.
 /// @throws std::invalid_argument for a name that is not one of them, a torque on a prescribed
 ///   one, a range that does not rise, or one without a name where several are free
-DesignLimits withCoordinates(DesignLimits limits, const MusculoskeletalSystem& arm,
+DesignLimits withCoordinates(DesignLimits limits, const MusculoskeletalSystem& system,
                              const GivenLimits& given);
 
 /// All free coordinates as what is observed.
 /// @param angle, shift  noise of rotations [rad] and of others [m]
-std::vector<ChannelCandidate> freeCoordinates(const MusculoskeletalSystem& arm, double angle,
+std::vector<ChannelCandidate> freeCoordinates(const MusculoskeletalSystem& system, double angle,
                                               double shift);
 
 /// Groups by name: "flexors" and "extensors" of the first coordinate, "NAME.flexors" and
 /// "NAME.extensors" of another, or names of muscles, "BRA+BRD" for two with one excitation.
-std::vector<MuscleGroup> muscleGroups(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q,
+std::vector<MuscleGroup> muscleGroups(const MusculoskeletalSystem& system, const Eigen::VectorXd& q,
                                       const std::vector<std::string>& names);
 
 /// Simulates and estimates a designed experiment again and again, to confirm the bounds on the
 /// parameters of interest. Estimates have no priors and start within 0.05 % of the truth.
 /// @param catalogue   of the design
-/// @param system      of its arm
+/// @param system      of its system
 /// @param simulation  of the design
 /// @param options     trials, seed, threads and progress
 /// @throws std::invalid_argument for a design with nuisance parameters; what info::monteCarlo

@@ -111,12 +111,12 @@ struct DynamometerPlan {
 /// one after the other, each the one that adds most to what the ones before tell, none twice, since
 /// its error of the model would be the same again. Flexors and extensors contract in turn. Nuisance
 /// parameters are unknown as well; all have their default priors.
-/// @param arm      in which the coordinate is prescribed, and nothing is free
+/// @param system      in which the coordinate is prescribed, and nothing is free
 /// @param options  that it was made with
 /// @throws std::invalid_argument unknown coordinate or parameters, lists out of their range, a
 ///   coordinate that cannot be free although isotonic contractions are considered;
 ///   std::runtime_error if none of the experiments can be simulated
-DynamometerPlan planOnDynamometer(const Model& model, const MusculoskeletalSystem& arm,
+DynamometerPlan planOnDynamometer(const Model& model, const MusculoskeletalSystem& system,
                                   const SystemOptions& options, const SimulationOptions& simulation,
                                   const DynamometerQuestion& question);
 

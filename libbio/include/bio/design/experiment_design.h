@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "bio/observation/observed_motion.h"
 #include "bio/design/input_search.h"
 #include "bio/observation/channel_information.h"
+#include "bio/observation/observed_motion.h"
 #include "info/design/trajectory_search.h"
 #include "info/information/optimality.h"
 
@@ -69,18 +69,18 @@ class ExperimentDesign {
   /// @param trial the baseline trial: excitations, duration, the course of prescribed coordinates.
   ///   Muscles in no group keep their excitations.
   /// @param setting    the model's values, catalogue.nominal() or another; made of the same model
-  ///   as `arm`
+  ///   as `system`
   /// @param groups muscle groups whose excitations are designed; may be empty
   /// @param simulation integrator vi or vi-left; start time, duration, step
   /// @throws std::invalid_argument what ObservedMotion and DesignInputs throw, a number out of
   ///   range, nothing observed or twice the same, no parameter
-  ExperimentDesign(const MusculoskeletalSystem& arm, const ParameterCatalogue& catalogue,
+  ExperimentDesign(const MusculoskeletalSystem& system, const ParameterCatalogue& catalogue,
                    ParameterCatalogue::Setting setting, const Trial& trial,
                    const SimulationOptions& simulation, DesignQuestion question,
                    DesignLimits limits, std::vector<MuscleGroup> groups, double knotInterval = 0.3);
 
   const DesignInputs& inputs() const { return inputs_; }
-  const MusculoskeletalSystem& arm() const { return *arm_; }
+  const MusculoskeletalSystem& system() const { return *system_; }
   const DesignQuestion& question() const { return question_; }
 
   /// The baseline trial. @throws NoStaticEquilibrium; std::runtime_error if it does not reach the
@@ -121,7 +121,7 @@ class ExperimentDesign {
   bool keepsRanges(const std::vector<MotionRange>& ranges) const;
   class Runs;
 
-  const MusculoskeletalSystem* arm_;
+  const MusculoskeletalSystem* system_;
   const ParameterCatalogue* catalogue_;
   ParameterCatalogue::Setting setting_;
   SimulationOptions simulation_;
@@ -135,7 +135,7 @@ class ExperimentDesign {
 
 /// The flexors and the extensors of a coordinate, by the sign of the moment arm at its initial
 /// value, with the other coordinates at their defaults; without muscles that do not cross it.
-std::vector<MuscleGroup> flexorsAndExtensors(const MusculoskeletalSystem& arm,
+std::vector<MuscleGroup> flexorsAndExtensors(const MusculoskeletalSystem& system,
                                              const Eigen::VectorXd& q, int coordinate = 0);
 
 }  // namespace bio

@@ -63,7 +63,7 @@ class SeparatingDesign {
                    double knotInterval = 0.3);
 
   const DesignInputs& inputs() const { return inputs_; }
-  const MusculoskeletalSystem& arm() const { return system_; }
+  const MusculoskeletalSystem& system() const { return system_; }
   const SeparationQuestion& question() const { return question_; }
   /// The catalogue entries.
   const info::discover::Candidate& first() const { return candidates_[0]; }

@@ -59,7 +59,7 @@ std::string effectCredits(const EncompassingModel& encompassing,
 Augmented addEffects(const EncompassingModel& encompassing, const std::vector<EffectToAdd>& effects,
                      const EffectProvenance& provenance);
 /// The model with effects where its EncompassingModel, with `formula`, is not there yet.
-Augmented addEffects(const Model& model, const SystemOptions& arm,
+Augmented addEffects(const Model& model, const SystemOptions& system,
                      const CoordinateNames& coordinates, const std::vector<EffectToAdd>& effects,
                      const EffectProvenance& provenance,
                      const std::vector<info::discover::FormulaTerm>& formula = {},

@@ -72,7 +72,7 @@ std::vector<std::string> unsaturated(const EncompassingModel& model,
 /// @param formula  if not empty, also addFormula of it, on the coordinate `axis`
 /// @param sensors  what is measured; empty: the coordinates
 /// @throws std::invalid_argument for an unknown id, with a list of the known ones
-EncompassingModel encompassingModel(const Model& model, const SystemOptions& arm,
+EncompassingModel encompassingModel(const Model& model, const SystemOptions& system,
                                     const CoordinateNames& coordinates,
                                     const std::vector<std::string>& without = {},
                                     const std::vector<info::discover::FormulaTerm>& formula = {},

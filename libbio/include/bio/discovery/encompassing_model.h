@@ -80,17 +80,17 @@ class EncompassingModel {
   using Candidate = info::discover::Candidate;
 
   /// @param coordinates those whose motion is in question, at least one, free or prescribed in
-  ///   `arm`
+  ///   `system`
   /// @param sensors what is measured; empty: the coordinates
   /// @throws std::invalid_argument what MusculoskeletalSystem throws; a coordinate that is not free
-  EncompassingModel(const Model& model, const SystemOptions& arm,
+  EncompassingModel(const Model& model, const SystemOptions& system,
                     const CoordinateNames& coordinates, std::vector<Observable> sensors = {});
 
   // What effects ask ------------------------------------------------------------------------------
 
   const Model& base() const { return base_; }
-  const MusculoskeletalSystem& arm() const { return *arm_; }
-  const SystemOptions& armOptions() const { return armOptions_; }
+  const MusculoskeletalSystem& system() const { return *system_; }
+  const SystemOptions& systemOptions() const { return systemOptions_; }
   const std::vector<MovingCoordinate>& coordinates() const { return coordinates_; }
   std::vector<std::string> coordinateNames() const;
   /// Whether there is one coordinate, whose effects have short ids.
@@ -108,7 +108,7 @@ class EncompassingModel {
   /// A point of a body, in ground, at q of the first coordinate and the defaults of the others.
   Eigen::Vector3d positionOf(const std::string& body, const Eigen::Vector3d& point, double q) const;
   /// Moment arms of a system's muscles, each coordinate at mid-range [m]: muscles × coordinates.
-  Eigen::MatrixXd momentArms(const MusculoskeletalSystem& arm) const;
+  Eigen::MatrixXd momentArms(const MusculoskeletalSystem& system) const;
   /// ∂(mass centre of a body in ground)/∂q of the first coordinate.
   Eigen::Vector3d velocityOf(const std::string& body, double q) const;
   /// Id of an effect or quantity of a coordinate: "visc"; of several, "knee_angle_r.visc".
@@ -167,8 +167,8 @@ class EncompassingModel {
   /// @param wanted quantities whose derivatives are required: their forces are switched on
   ParameterCatalogue::Setting settingAt(const Eigen::VectorXd& values,
                                         const std::vector<std::size_t>& wanted) const;
-  /// The compiled model of a setting; paths with unchanged numbers are those of arm().
-  MusculoskeletalSystem armOf(const ParameterCatalogue::Setting& setting) const;
+  /// The compiled model of a setting; paths with unchanged numbers are those of system().
+  MusculoskeletalSystem systemOf(const ParameterCatalogue::Setting& setting) const;
   /// Derivatives of the numbers with respect to a quantity; empty for one of the sensor.
   ParameterDirection direction(const Eigen::VectorXd& values, std::size_t quantity) const;
   SensorLaw sensorAt(const Eigen::VectorXd& values, std::size_t sensor = 0) const;
@@ -199,8 +199,8 @@ class EncompassingModel {
   void findGroups();
 
   Model base_;
-  SystemOptions armOptions_;
-  std::unique_ptr<const MusculoskeletalSystem> arm_;
+  SystemOptions systemOptions_;
+  std::unique_ptr<const MusculoskeletalSystem> system_;
   std::vector<MovingCoordinate> coordinates_;
   std::vector<Observable> sensors_;
   std::unique_ptr<const ParameterCatalogue> parameters_;

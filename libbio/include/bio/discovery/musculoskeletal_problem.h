@@ -37,7 +37,8 @@ inline constexpr double shortestSearchStep = 0.003;
 
 /// The observables that trials measure, in a problem's order: the coordinates in question that are
 /// not prescribed, then all other channels.
-std::vector<Observable> measuredOutputs(const std::vector<Trial>& trials, const SystemOptions& arm,
+std::vector<Observable> measuredOutputs(const std::vector<Trial>& trials,
+                                        const SystemOptions& system,
                                         const std::vector<std::string>& coordinates);
 
 /// The coordinates in question of trials: all free ones; where none is free, those of `held`
@@ -77,7 +78,7 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   /// @throws std::invalid_argument what EncompassingModel and ObservedMotion throw, no trial, a
   ///   trial without a measured value, an integrator without sensitivities, an option out of range,
   ///   a known mass in the hand of a model without a body to carry it
-  MusculoskeletalProblem(const Model& model, const SystemOptions& arm,
+  MusculoskeletalProblem(const Model& model, const SystemOptions& system,
                          const CoordinateNames& coordinates, std::vector<Trial> trials,
                          MusculoskeletalProblemOptions options = {});
 
@@ -128,7 +129,7 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   Trajectory inverseDynamics(int trial, const Eigen::VectorXd& values,
                              const Trajectory& motion) const;
   /// The model that it belongs to.
-  MusculoskeletalSystem armAt(int trial, const Eigen::VectorXd& values) const;
+  MusculoskeletalSystem systemAt(int trial, const Eigen::VectorXd& values) const;
   /// Its initial state by coordinate: the coordinate itself, not the sensor's reading.
   std::vector<TrialStart> startsAt(int trial, const Eigen::VectorXd& values) const;
   /// Why the trial's simulation does not reach its end; empty if it does.
@@ -162,46 +163,46 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
     Eigen::VectorXd known;     ///< change of the model's quantities by Trial::known
     std::vector<Start> starts;
   };
-  Eigen::VectorXd withTimedForces(const OfTrial& one, const Eigen::VectorXd& values,
+  Eigen::VectorXd withTimedForces(const OfTrial& trial, const Eigen::VectorXd& values,
                                   const Eigen::VectorXd& latent) const;
   /// Derivatives of the forces at the nodes with respect to the wanted quantities: nodes × wanted;
   /// empty if they depend on none.
-  Eigen::MatrixXd timedDirections(const OfTrial& one, const Eigen::VectorXd& values,
+  Eigen::MatrixXd timedDirections(const OfTrial& trial, const Eigen::VectorXd& values,
                                   const std::vector<std::size_t>& wanted) const;
   double activationLag() const;
   void addTrial(Trial trial);
-  void collectSamples(OfTrial& one) const;
-  void addNodes(OfTrial& one) const;
-  void addStarts(OfTrial& one);
+  void collectSamples(OfTrial& trial) const;
+  void addNodes(OfTrial& trial) const;
+  void addStarts(OfTrial& trial);
   /// A number of the initial state of the trial that is being added; its place.
   std::size_t addOwnQuantity(const std::string& what, Quantity quantity);
   /// Equivalent candidates that these trials distinguish.
   void separateWhatTrialsTellApart();
   const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
-  ParameterCatalogue::Setting settingAt(const OfTrial& one, const Eigen::VectorXd& values,
+  ParameterCatalogue::Setting settingAt(const OfTrial& trial, const Eigen::VectorXd& values,
                                         const std::vector<std::size_t>& wanted) const;
-  SimulationOptions simulationOf(const OfTrial& one, const Eigen::VectorXd& values,
+  SimulationOptions simulationOf(const OfTrial& trial, const Eigen::VectorXd& values,
                                  const Eigen::VectorXd& latent) const;
   /// The sensors of the trial's series, on a system that is that of `values`.
-  std::vector<SensedMotion> sensedBy(const MusculoskeletalSystem& system, const OfTrial& one,
+  std::vector<SensedMotion> sensedBy(const MusculoskeletalSystem& system, const OfTrial& trial,
                                      const Eigen::VectorXd& values) const;
-  ExcitationSignal excitationFor(const OfTrial& one, const MusculoskeletalSystem& arm) const;
+  ExcitationSignal excitationFor(const OfTrial& trial, const MusculoskeletalSystem& system) const;
   struct Simulated {
     MusculoskeletalSystem system;
     Trajectory motion;
   };
-  Simulated simulate(const OfTrial& one, const Eigen::VectorXd& values,
+  Simulated simulate(const OfTrial& trial, const Eigen::VectorXd& values,
                      const Eigen::VectorXd& latent, double stepFactor,
                      const std::vector<Nudge>* nudges) const;
-  Eigen::VectorXd outputsOf(const OfTrial& one, const Eigen::VectorXd& values,
+  Eigen::VectorXd outputsOf(const OfTrial& trial, const Eigen::VectorXd& values,
                             const Eigen::VectorXd& latent, double stepFactor,
                             const std::vector<Nudge>* nudges) const;
   /// Columns of a simulation's sensitivities that the wanted quantities follow.
   struct Columns;
-  Columns columnsOf(const OfTrial& one, const Eigen::VectorXd& values,
+  Columns columnsOf(const OfTrial& trial, const Eigen::VectorXd& values,
                     const std::vector<std::size_t>& wanted) const;
   /// Scales of the latent force at the nodes: the muscles' moments, and the floor.
-  Eigen::MatrixXd latentScale(const OfTrial& one, const MusculoskeletalSystem& arm,
+  Eigen::MatrixXd latentScale(const OfTrial& trial, const MusculoskeletalSystem& system,
                               const Trajectory& motion) const;
   std::unique_ptr<Simulation> simulatedWith(const std::vector<Nudge>* nudges, int trial,
                                             const Eigen::VectorXd& values,

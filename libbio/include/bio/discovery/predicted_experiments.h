@@ -22,7 +22,7 @@ struct PredictedExperiment {
 /// Empty if no effects are in question.
 /// @param trial trial to repeat
 /// @param options  those of `data`
-std::vector<PredictedExperiment> predictExperiments(const Model& model, const SystemOptions& arm,
+std::vector<PredictedExperiment> predictExperiments(const Model& model, const SystemOptions& system,
                                                     const Trial& trial,
                                                     const MusculoskeletalProblemOptions& options,
                                                     const MusculoskeletalProblem& data,

@@ -17,7 +17,7 @@ Eigen::VectorXd experimentalConditionsOf(const Trial& trial, const EncompassingM
 /// with gravity turned accordingly. The unchanged model if nothing was changed.
 /// @param coordinates the free ones
 /// @throws what EncompassingModel and experimentalConditionsOf throw
-Model withExperimentalConditions(const Model& model, const SystemOptions& arm,
+Model withExperimentalConditions(const Model& model, const SystemOptions& system,
                                  const CoordinateNames& coordinates, const Trial& trial);
 
 }  // namespace bio::discover

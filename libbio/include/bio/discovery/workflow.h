@@ -18,7 +18,7 @@ namespace bio::discover {
 /// Question to a search for a missing effect.
 struct DiscoveryRequest {
   const Model& model;
-  SystemOptions arm;
+  SystemOptions system;
   CoordinateNames coordinates;  ///< those in question
   std::vector<Trial> trials;    ///< those held out last
   std::size_t numHeldOut = 0;   ///< < trials.size(); tested by only

@@ -72,6 +72,6 @@ class ExternalForce {
 };
 
 /// The sum of both forces, with rows at the times of either; both act on the same coordinates.
-ExternalForce sum(const ExternalForce& one, const ExternalForce& other);
+ExternalForce sum(const ExternalForce& force, const ExternalForce& other);
 
 }  // namespace bio

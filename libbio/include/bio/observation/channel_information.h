@@ -19,7 +19,7 @@ struct ChannelCandidate {
 /// shifts 1 mm, their speeds 5°/s and 10 mm/s, moments 0.5 N·m, forces 2 N, fibre lengths 1 mm,
 /// tendon forces 10 N, activations 0.05, markers 2 mm. Prescribed coordinates are inputs: of them
 /// only the moment.
-std::vector<ChannelCandidate> usualChannels(const MusculoskeletalSystem& arm);
+std::vector<ChannelCandidate> usualChannels(const MusculoskeletalSystem& system);
 
 /// Information that a further channel would add to what is known of the parameters.
 struct ChannelGain {
@@ -32,7 +32,7 @@ struct ChannelGain {
 /// Fisher information ΓᵀΓ/σ² of each candidate, sampled at these times [s] of a motion.
 /// @param motion with sensitivities of muscles and reactions
 /// @throws std::invalid_argument what ObservedMotion throws, or a noise that is not > 0
-std::vector<Eigen::MatrixXd> informationOf(const MusculoskeletalSystem& arm,
+std::vector<Eigen::MatrixXd> informationOf(const MusculoskeletalSystem& system,
                                            const std::vector<ChannelCandidate>& candidates,
                                            const std::vector<double>& times,
                                            const SensitivityTrajectory& motion);

@@ -14,7 +14,7 @@ namespace bio {
 /// @param sd        σ > 0, as many
 /// @throws std::invalid_argument sizes that differ; σ not above 0; a measured value that is not
 ///   finite; fibre lengths, tendon forces, activations and moments, whose costs have no adjoint
-MotionCost leastSquaresCost(const MusculoskeletalSystem& arm, std::vector<ObservedSeries> series,
+MotionCost leastSquaresCost(const MusculoskeletalSystem& system, std::vector<ObservedSeries> series,
                             Eigen::VectorXd measured, Eigen::VectorXd sd);
 
 }  // namespace bio

@@ -28,7 +28,7 @@ struct Nudge {
 /// @param values     measured [rad] or [m]
 /// @param frequency  ω [rad/s] > 0
 /// @throws std::invalid_argument what smoothed() throws
-Nudge nudgeTo(const MusculoskeletalSystem& arm, int freeIndex, const std::vector<double>& times,
+Nudge nudgeTo(const MusculoskeletalSystem& system, int freeIndex, const std::vector<double>& times,
               const Eigen::VectorXd& values, double frequency);
 
 /// Adds spring and damper to a model, and the pull towards the course to the external forces.

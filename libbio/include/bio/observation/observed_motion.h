@@ -24,7 +24,7 @@ class ObservedMotion {
  public:
   /// @throws std::invalid_argument for a coordinate that is not free, a moment at a coordinate that
   ///   is not prescribed, a muscle that is not simulated, a marker that the model does not have
-  ObservedMotion(const MusculoskeletalSystem& arm, std::vector<ObservedSeries> series);
+  ObservedMotion(const MusculoskeletalSystem& system, std::vector<ObservedSeries> series);
 
   const std::vector<ObservedSeries>& series() const { return series_; }
   Eigen::Index size() const { return size_; }
@@ -59,7 +59,7 @@ class ObservedMotion {
                       const Trajectory& motion, const Eigen::Ref<const Eigen::VectorXd>& lambda,
                       Eigen::MatrixXd& q, Eigen::MatrixXd& qDot) const;
 
-  const MusculoskeletalSystem* arm_;
+  const MusculoskeletalSystem* system_;
   std::vector<ObservedSeries> series_;
   std::vector<int> sources_;  ///< index of the coordinate, muscle or marker of each series
   Eigen::Index size_ = 0;

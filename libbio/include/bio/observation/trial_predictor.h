@@ -25,7 +25,7 @@ class TrialPredictor {
   /// @param selection   indices of the catalogue's parameters: θ
   /// @throws std::invalid_argument if the coordinate is not free, a time is outside the
   ///   simulation, or the integrator has no sensitivities
-  TrialPredictor(const ParameterCatalogue& catalogue, const SystemOptions& arm,
+  TrialPredictor(const ParameterCatalogue& catalogue, const SystemOptions& system,
                  ExcitationSignal trial, const std::string& coordinate, std::vector<double> times,
                  std::vector<std::size_t> selection, const SimulationOptions& options);
 
@@ -33,7 +33,7 @@ class TrialPredictor {
   /// @param options  with the motion of prescribed coordinates
   /// @throws std::invalid_argument if a time is outside the simulation or does not rise, or the
   ///   integrator has no sensitivities
-  TrialPredictor(const ParameterCatalogue& catalogue, const SystemOptions& arm,
+  TrialPredictor(const ParameterCatalogue& catalogue, const SystemOptions& system,
                  ExcitationSignal trial, std::vector<ObservedSeries> series,
                  std::vector<std::size_t> selection, const SimulationOptions& options);
 
@@ -75,13 +75,13 @@ class TrialPredictor {
   struct Held {
     ParameterCatalogue::Setting setting;
     SimulationOptions options;
-    MusculoskeletalSystem arm;
+    MusculoskeletalSystem system;
   };
   Held heldAt(ParameterCatalogue::Setting setting) const;
   SensitivityTrajectory sensitivitiesOf(const Held& held, bool muscles, bool reactions) const;
 
   const ParameterCatalogue* catalogue_;
-  SystemOptions armOptions_;
+  SystemOptions systemOptions_;
   ExcitationSignal trial_;
   std::vector<ObservedSeries> series_;
   Eigen::Index size_ = 0;

@@ -148,8 +148,8 @@ struct StartPoint {
 class ParameterCatalogue {
  public:
   /// @param start initial state; one entry per free coordinate
-  ParameterCatalogue(const Model& model, const MusculoskeletalSystem& arm, const StartPoint& start,
-                     const EmgMapping& mapping = {});
+  ParameterCatalogue(const Model& model, const MusculoskeletalSystem& system,
+                     const StartPoint& start, const EmgMapping& mapping = {});
 
   const std::vector<ModelParameter>& parameters() const { return parameters_; }
 
@@ -195,7 +195,7 @@ class ParameterCatalogue {
   Model model_;
   EmgMapping mapping_;
   StartPoint start_;
-  std::vector<std::string> muscles_;  ///< of the arm
+  std::vector<std::string> muscles_;  ///< of the system
   std::vector<ModelParameter> parameters_;
 };
 

@@ -38,12 +38,12 @@ struct CostGradient {
 /// is the start with the fibres in static equilibrium. Exact where simulateWithSensitivities() is,
 /// for the same parameters, and at the same kinks one-sided. See docs/theory/sensitivity.md.
 ///
-/// @param arm, catalogue, setting, wanted, trial  as for simulateWithSensitivities
+/// @param system, catalogue, setting, wanted, trial  as for simulateWithSensitivities
 /// @param cost  smooth; called once with the motion. If the value is not finite, all derivatives
 ///   are NaN.
 /// @throws std::invalid_argument for an integrator other than vi and vi-left, slopes of another
 ///   size than the motion's, and what simulate() throws; NoStaticEquilibrium
-CostGradient simulateWithGradient(const MusculoskeletalSystem& arm,
+CostGradient simulateWithGradient(const MusculoskeletalSystem& system,
                                   const ParameterCatalogue& catalogue,
                                   const ParameterCatalogue::Setting& setting,
                                   const std::vector<std::size_t>& wanted,
@@ -51,7 +51,7 @@ CostGradient simulateWithGradient(const MusculoskeletalSystem& arm,
                                   const MotionCost& cost);
 
 /// The gradient along directions in any elementary numbers of the setting.
-CostGradient simulateWithGradient(const MusculoskeletalSystem& arm,
+CostGradient simulateWithGradient(const MusculoskeletalSystem& system,
                                   const ParameterCatalogue::Setting& setting,
                                   const std::vector<ParameterDirection>& wanted,
                                   const ExcitationSignal& trial, const SimulationOptions& options,

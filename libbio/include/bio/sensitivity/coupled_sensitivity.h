@@ -62,13 +62,13 @@ struct SensitivityOptions {
 /// agree to within their own accuracy. At kinks (a fibre exactly between shortening and
 /// lengthening, a path at lift-off) the derivative is that of one side.
 ///
-/// @param arm      compiled from setting.model
+/// @param system      compiled from setting.model
 /// @param setting  catalogue.at(…) or catalogue.nominal()
 /// @param wanted   indices of the catalogue's parameters, columns of the result in this order
 /// @param trial    as recorded; setting.mapping turns it into excitations
 /// @throws std::invalid_argument for another integrator, and what simulate() throws;
 ///   NoStaticEquilibrium
-SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm,
+SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& system,
                                                 const ParameterCatalogue& catalogue,
                                                 const ParameterCatalogue::Setting& setting,
                                                 const std::vector<std::size_t>& wanted,
@@ -76,23 +76,23 @@ SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm
                                                 const SensitivityOptions& options);
 
 /// Sensitivities along directions in any elementary numbers of the setting, one column each.
-SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& arm,
+SensitivityTrajectory simulateWithSensitivities(const MusculoskeletalSystem& system,
                                                 const ParameterCatalogue::Setting& setting,
                                                 const std::vector<ParameterDirection>& wanted,
                                                 const ExcitationSignal& trial,
                                                 const SensitivityOptions& options);
 
 /// Only the motion, from the same inputs.
-Trajectory simulateSetting(const MusculoskeletalSystem& arm,
+Trajectory simulateSetting(const MusculoskeletalSystem& system,
                            const ParameterCatalogue::Setting& setting,
                            const ExcitationSignal& trial, const SimulationOptions& options);
 
 /// The initial state of a setting: its coordinates and speeds, with the fibres in static
 /// equilibrium. @throws NoStaticEquilibrium
-SystemState startOf(const MusculoskeletalSystem& arm, const ParameterCatalogue::Setting& setting,
+SystemState startOf(const MusculoskeletalSystem& system, const ParameterCatalogue::Setting& setting,
                     const ExcitationSignal& driven, double time);
 
-/// Names of the arm's muscles, in order.
-std::vector<std::string> muscleNames(const MusculoskeletalSystem& arm);
+/// Names of the system's muscles, in order.
+std::vector<std::string> muscleNames(const MusculoskeletalSystem& system);
 
 }  // namespace bio

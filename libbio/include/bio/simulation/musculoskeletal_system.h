@@ -157,8 +157,8 @@ class SystemConfiguration {
  public:
   using Vector = Eigen::Matrix<double, N, 1>;
 
-  explicit SystemConfiguration(const MusculoskeletalSystem& arm)
-      : arm_(&arm), motions_(arm.skeleton().numSegments()), lengths_(arm.numPaths()) {
+  explicit SystemConfiguration(const MusculoskeletalSystem& system)
+      : system_(&system), motions_(system.skeleton().numSegments()), lengths_(system.numPaths()) {
     energy_.T_q.setZero();
     energy_.T_vq.setZero();
     energy_.T_qq.setZero();
@@ -171,7 +171,7 @@ class SystemConfiguration {
       try {
         for (; i < lengths_.size(); ++i) {
           lengths_[i] =
-              arm_->path(i).template length<N>(q, motions_.data(), holds_ ? &held_ : nullptr);
+              system_->path(i).template length<N>(q, motions_.data(), holds_ ? &held_ : nullptr);
         }
       } catch (const std::domain_error&) {
         lengths_[i].length = std::numeric_limits<double>::quiet_NaN();
@@ -188,8 +188,8 @@ class SystemConfiguration {
 
   /// Does not update the lengths.
   void moveSkeletonTo(const Vector& q) {
-    arm_->skeleton().template motions<double, N>(q, motions_.data());
-    inertia_ = arm_->skeleton().template inertia<N>(q, motions_.data());
+    system_->skeleton().template motions<double, N>(q, motions_.data());
+    inertia_ = system_->skeleton().template inertia<N>(q, motions_.data());
   }
 
   /// Lengths and inertia at q + d by their Taylor polynomials at q, up to the derivatives
@@ -204,7 +204,7 @@ class SystemConfiguration {
     const Vector change = inertia_.d2V * d;
     inertia_.potential += d.dot(inertia_.dV + change / 2);
     inertia_.dV += change;
-    if (arm_->skeleton().hasConstantInertia()) return;
+    if (system_->skeleton().hasConstantInertia()) return;
     for (int i = 0; i < N; ++i) {
       for (int j = 0; j < N; ++j) {
         const auto& bend = inertia_.d2M[static_cast<std::size_t>(pairIndex(i, j))];
@@ -232,7 +232,7 @@ class SystemConfiguration {
     e.T_v.noalias() = inertia_.massMatrix * v;
     e.V_q = inertia_.dV;
     e.V_qq = inertia_.d2V;
-    if (arm_->skeleton().hasConstantInertia()) return e;
+    if (system_->skeleton().hasConstantInertia()) return e;
     for (int k = 0; k < N; ++k) {
       const Vector M_k_v = inertia_.dM[static_cast<std::size_t>(k)] * v;
       e.T_q[k] = v.dot(M_k_v) / 2;
@@ -248,7 +248,7 @@ class SystemConfiguration {
   const LengthJet<N>& length(std::size_t i) const { return lengths_[i]; }
 
  private:
-  const MusculoskeletalSystem* arm_;
+  const MusculoskeletalSystem* system_;
   std::vector<RigidMotion<double, N>> motions_;
   InertiaJet<N> inertia_;
   EnergyDerivatives<N> energy_;

@@ -21,7 +21,7 @@ enum class Integrator {
   cvode             ///< SUNDIALS BDF, adaptive, analytic Jacobian: the converged reference
 };
 
-/// State of an arm; column vectors over free coordinates and over muscles.
+/// State of a system; column vectors over free coordinates and over muscles.
 struct SystemState {
   Eigen::VectorXd q;            ///< [rad] or [m]
   Eigen::VectorXd qDot;         ///< [rad/s] or [m/s]
@@ -84,9 +84,9 @@ class NoStaticEquilibrium : public std::runtime_error {
 
 /// Initial state of a simulation: q with speed 0, activation = excitation at `time` (at least the
 /// activation floor), every fibre in static equilibrium.
-/// @param excitation  one column per muscle of the arm
+/// @param excitation  one column per muscle of the system
 /// @throws NoStaticEquilibrium, std::invalid_argument (sizes)
-SystemState initialState(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q,
+SystemState initialState(const MusculoskeletalSystem& system, const Eigen::VectorXd& q,
                          const ExcitationSignal& excitation, double time);
 
 /// Simulates the motion that the excitations produce.
@@ -110,7 +110,7 @@ SystemState initialState(const MusculoskeletalSystem& arm, const Eigen::VectorXd
 ///
 /// @throws std::invalid_argument sizes (the external force's too), step ≤ 0, duration ≤ 0, a
 ///   step below 1e-9 of the time, a prescribed coordinate without a course over the whole time
-Trajectory simulate(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+Trajectory simulate(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                     const SystemState& start, const SimulationOptions& options);
 
 /// Kinetic and potential energy at a state [J].
@@ -118,15 +118,15 @@ struct Energy {
   double kinetic = 0;
   double potential = 0;  ///< of gravity
 };
-Energy energyOf(const MusculoskeletalSystem& arm, const Eigen::VectorXd& q,
+Energy energyOf(const MusculoskeletalSystem& system, const Eigen::VectorXd& q,
                 const Eigen::VectorXd& qDot);
 
 /// E(t) − E(0) − work of muscles, passive and external forces at every row [J]: the energy error of
 /// the integrator.
-Eigen::VectorXd energyImbalance(const MusculoskeletalSystem& arm, const Trajectory& trajectory);
+Eigen::VectorXd energyImbalance(const MusculoskeletalSystem& system, const Trajectory& trajectory);
 
 /// max over time of |energyImbalance| [J].
-double energyError(const MusculoskeletalSystem& arm, const Trajectory& trajectory);
+double energyError(const MusculoskeletalSystem& system, const Trajectory& trajectory);
 
 /// Muscle quantities along a motion; rows = muscles, columns = times.
 struct MuscleReport {
@@ -137,7 +137,7 @@ struct MuscleReport {
 /// @param trajectory  coordinates and fibre lengths, of muscles with rigid tendons also speeds and
 ///   activations
 /// @throws std::invalid_argument where one of these is missing or of another size
-MuscleReport reportMuscles(const MusculoskeletalSystem& arm, const Trajectory& trajectory,
+MuscleReport reportMuscles(const MusculoskeletalSystem& system, const Trajectory& trajectory,
                            int coordinate = 0);
 
 }  // namespace bio

@@ -9,7 +9,7 @@ namespace bio {
 
 /// One of many simulations; the objects it points to must outlive the call.
 struct LaneJob {
-  const MusculoskeletalSystem* arm;
+  const MusculoskeletalSystem* system;
   const ExcitationSignal* excitation;
   const SystemState* start;
 };
@@ -20,7 +20,7 @@ enum class LaneInstructions {
   plain,  ///< those of every processor of the architecture
 };
 
-/// simulate(arm, excitation, start, options) for each job, four at a time in SIMD registers, for
+/// simulate(system, excitation, start, options) for each job, four at a time in SIMD registers, for
 /// models with one hinge that differ in numerical values only.
 ///
 /// The scheme is that of simulate() and its tolerances are the same; paths and gravity are taken at

@@ -13,7 +13,7 @@ class SystemConfiguration<Eigen::Dynamic> {
   using Vector = Eigen::VectorXd;
 
   /// @throws std::invalid_argument the system's skeleton is not a tree
-  explicit SystemConfiguration(const MusculoskeletalSystem& arm);
+  explicit SystemConfiguration(const MusculoskeletalSystem& system);
   SystemConfiguration(const SystemConfiguration&) = delete;  // refers to itself
   SystemConfiguration& operator=(const SystemConfiguration&) = delete;
 
@@ -51,7 +51,7 @@ class SystemConfiguration<Eigen::Dynamic> {
  private:
   const EnergyDerivatives<Eigen::Dynamic>& known();
 
-  const MusculoskeletalSystem* arm_;
+  const MusculoskeletalSystem* system_;
   TreePlaces places_;
   TreeMotion<double> motion_;
   TreeEnergy<Eigen::Dynamic> energy_;

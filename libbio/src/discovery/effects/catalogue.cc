@@ -91,7 +91,7 @@ void mustBeKnown(const EncompassingModel& encompassing, const std::vector<std::s
                                      [&](const EffectEntry& entry) { return id == entry.id; });
     if (isEntry || encompassing.knows(id) || encompassing.present().count(id) > 0) continue;
     std::vector<std::string> known;
-    for (const Candidate& one : encompassing.candidates()) known.push_back(one.id);
+    for (const Candidate& candidate : encompassing.candidates()) known.push_back(candidate.id);
     throw std::invalid_argument(
         fmt::format("no effect is called '{}'; the catalogue has {}", id, fmt::join(known, ", ")));
   }
@@ -99,13 +99,13 @@ void mustBeKnown(const EncompassingModel& encompassing, const std::vector<std::s
 
 }  // namespace
 
-EncompassingModel encompassingModel(const Model& model, const SystemOptions& arm,
+EncompassingModel encompassingModel(const Model& model, const SystemOptions& system,
                                     const CoordinateNames& coordinates,
                                     const std::vector<std::string>& leftOut,
                                     const std::vector<info::discover::FormulaTerm>& formula,
                                     std::size_t axis, std::vector<Observable> sensors) {
   const std::vector<std::string> without = effectIds(leftOut);
-  EncompassingModel encompassing(model, arm, coordinates, std::move(sensors));
+  EncompassingModel encompassing(model, system, coordinates, std::move(sensors));
   addNuisances(encompassing);
   addExperimentalConditions(encompassing);
   for (const EffectEntry& entry : effectEntries()) {
@@ -130,21 +130,22 @@ Candidate candidate(const EncompassingModel& model, std::string id, std::string 
                     std::vector<std::size_t> quantities,
                     const std::vector<std::vector<double>>& starts,
                     std::vector<std::string> equivalents) {
-  Candidate one{std::move(id),
-                std::move(name),
-                std::move(sentence),
-                kind,
-                std::move(quantities),
-                {},
-                {},
-                std::move(equivalents)};
-  for (const std::size_t quantity : one.quantities) {
-    one.sds.push_back(model.quantities()[quantity].sd);
+  Candidate candidate{std::move(id),
+                      std::move(name),
+                      std::move(sentence),
+                      kind,
+                      std::move(quantities),
+                      {},
+                      {},
+                      std::move(equivalents)};
+  for (const std::size_t quantity : candidate.quantities) {
+    candidate.sds.push_back(model.quantities()[quantity].sd);
   }
   for (const std::vector<double>& start : starts) {
-    one.starts.push_back(Eigen::VectorXd::Map(start.data(), static_cast<Index>(start.size())));
+    candidate.starts.push_back(
+        Eigen::VectorXd::Map(start.data(), static_cast<Index>(start.size())));
   }
-  return one;
+  return candidate;
 }
 
 namespace {
@@ -176,7 +177,7 @@ CoordinateUnits unitsOf(const EncompassingModel& model, const MovingCoordinate& 
   for (const MuscleGroup& group : model.groups()) {
     for (const std::size_t i : group.muscles) {
       const double most =
-          maxIsometricForce(findMuscle(model.base(), model.arm().muscles()[i].name));
+          maxIsometricForce(findMuscle(model.base(), model.system().muscles()[i].name));
       (group.momentArms[k] > 0 ? up : down) += std::abs(group.momentArms[k]) * most;
     }
   }
@@ -244,10 +245,10 @@ std::optional<std::size_t> addExpression(EncompassingModel& model, const MovingC
     quantities.push_back(model.add(std::move(quantity), {Meaning::Kind::shift, {{number}}}));
   }
   model.lawFollows(quantities);
-  Candidate one =
+  Candidate candidate =
       candidateAt(model, at, effect.id, effect.name, effect.sentence, quantities, effect.starts);
-  one.equivalents = effect.equivalents;
-  model.add(std::move(one));
+  candidate.equivalents = effect.equivalents;
+  model.add(std::move(candidate));
   return force;
 }
 

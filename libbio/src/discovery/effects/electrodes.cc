@@ -40,8 +40,8 @@ void addCrosstalk(EncompassingModel& model) {
       std::vector<Meaning::Part> parts;
       for (const std::size_t i : to.muscles) {
         for (const std::size_t j : from.muscles) {
-          const EmgTarget target{What::crosstalk, model.arm().muscles()[i].name,
-                                 model.arm().muscles()[j].name};
+          const EmgTarget target{What::crosstalk, model.system().muscles()[i].name,
+                                 model.system().muscles()[j].name};
           parts.push_back({model.number(target, 0), 1 / static_cast<double>(from.muscles.size())});
         }
       }
@@ -58,7 +58,7 @@ void addCrosstalk(EncompassingModel& model) {
 }
 
 void addExchangedChannels(EncompassingModel& model) {
-  const auto& muscles = model.arm().muscles();
+  const auto& muscles = model.system().muscles();
   const auto share = [&](std::size_t to, std::size_t from) {
     return model.number(EmgTarget{What::crosstalk, muscles[to].name, muscles[from].name}, 0);
   };
@@ -90,7 +90,7 @@ template <class Use>
 void forMusclesAndGroups(const EncompassingModel& model, const Use& use) {
   for (const MuscleGroup& group : model.groups()) {
     std::vector<std::string> all;
-    for (const std::size_t i : group.muscles) all.push_back(model.arm().muscles()[i].name);
+    for (const std::size_t i : group.muscles) all.push_back(model.system().muscles()[i].name);
     if (all.size() > 1) use(group.name, all);
     for (const std::string& one : all) use(one, std::vector<std::string>{one});
   }
@@ -119,8 +119,8 @@ std::vector<std::string> unsaturated(const EncompassingModel& model,
                                      const std::vector<std::string>& flat) {
   std::vector<std::string> ids;
   forMusclesAndGroups(model, [&](const std::string& name, const std::vector<std::string>& muscles) {
-    const bool isFlat = std::all_of(muscles.begin(), muscles.end(), [&](const std::string& one) {
-      return std::find(flat.begin(), flat.end(), one) != flat.end();
+    const bool isFlat = std::all_of(muscles.begin(), muscles.end(), [&](const std::string& muscle) {
+      return std::find(flat.begin(), flat.end(), muscle) != flat.end();
     });
     if (!isFlat) ids.push_back(saturationId(name));
   });
@@ -145,7 +145,7 @@ void addElectrodeGains(EncompassingModel& model) {
   });
   if (model.groups().size() < 2) return;  // else that of the only group
   std::vector<std::string> all;
-  for (const SystemMuscle& muscle : model.arm().muscles()) all.push_back(muscle.name);
+  for (const SystemMuscle& muscle : model.system().muscles()) all.push_back(muscle.name);
   add("gain_of_all", all, "electrode gain of all muscles",
       "The EMG of all muscles is scaled by one wrong gain, as by a wrong unit, amplification or "
       "maximum voluntary contraction.",
@@ -166,12 +166,12 @@ void addBaselines(EncompassingModel& model) {
                         EffectKind::input, {o}, {{0.005}}));
   };
   std::vector<std::string> all;
-  for (const SystemMuscle& muscle : model.arm().muscles()) all.push_back(muscle.name);
+  for (const SystemMuscle& muscle : model.system().muscles()) all.push_back(muscle.name);
   if (all.empty()) return;
   add("offset", "all muscles", all);
   for (const MuscleGroup& group : model.groups()) {
     std::vector<std::string> muscles;
-    for (const std::size_t i : group.muscles) muscles.push_back(model.arm().muscles()[i].name);
+    for (const std::size_t i : group.muscles) muscles.push_back(model.system().muscles()[i].name);
     add("offset_" + group.name, group.name, muscles);
   }
 }

@@ -49,7 +49,7 @@ void addBeyond(EncompassingModel& model, std::size_t quantity, double sd, std::s
 
 void addNuisances(EncompassingModel& model) {
   for (const MuscleQuantityRule& rule : rules) {
-    for (const SystemMuscle& muscle : model.arm().muscles()) {
+    for (const SystemMuscle& muscle : model.system().muscles()) {
       model.addNuisance(
           model.add(factor(nuisanceName(muscle.name, rule), rule.lower, rule.upper, rule.tolerance),
                     {Meaning::Kind::scale,
@@ -66,9 +66,9 @@ void addNuisances(EncompassingModel& model) {
     }
     model.addNuisance(model.add(factor(massName, 0.3, 3, 0.05), {Meaning::Kind::scale, parts}));
   }
-  if (model.arm().numMuscles() > 0) {
+  if (model.system().numMuscles() > 0) {
     std::vector<Meaning::Part> parts;
-    for (const SystemMuscle& muscle : model.arm().muscles()) {
+    for (const SystemMuscle& muscle : model.system().muscles()) {
       if (muscle.activation.schutte()) {
         // rates, so that the time scale of the fibres' velocity stays as it is
         for (const char* rate : {".activation1", ".activation2"}) {
@@ -93,7 +93,7 @@ void addMassError(EncompassingModel& model) {
 }
 
 void addActivationError(EncompassingModel& model) {
-  if (model.arm().numMuscles() == 0) return;
+  if (model.system().numMuscles() == 0) return;
   addBeyond(model, model.find(timeName), 0.8, "tau", "time scale of activation",
             "The muscles' activation is slower or faster than in the model. EMG that a low-pass "
             "filter has smoothed looks the same as slower activation.");
@@ -106,7 +106,7 @@ void addMuscleErrors(EncompassingModel& model) {
       if (group.muscles.size() > 1) {
         std::vector<Meaning::Part> parts;
         for (const std::size_t i : group.muscles) {
-          const std::string& muscle = model.arm().muscles()[i].name;
+          const std::string& muscle = model.system().muscles()[i].name;
           for (const auto& part : model.numbers(fmt::format("{}.{}", muscle, rule.parameter))) {
             parts.push_back(part);
           }
@@ -121,7 +121,7 @@ void addMuscleErrors(EncompassingModel& model) {
             isForce ? std::vector<std::string>{"gain_" + group.name} : std::vector<std::string>{});
       }
       for (const std::size_t i : group.muscles) {
-        const std::string& muscle = model.arm().muscles()[i].name;
+        const std::string& muscle = model.system().muscles()[i].name;
         addBeyond(
             model, model.find(nuisanceName(muscle, rule)), rule.sd, rule.id + muscle,
             fmt::format("{} of {}", rule.words, muscle),
@@ -134,7 +134,7 @@ void addMuscleErrors(EncompassingModel& model) {
 
 void addTendonCompliance(EncompassingModel& model) {
   std::vector<Meaning::Part> parts;
-  for (const SystemMuscle& muscle : model.arm().muscles()) {
+  for (const SystemMuscle& muscle : model.system().muscles()) {
     const auto names = {".tendon_strain_scale", ".FmaxTendonStrain",
                         ".tendon_strain_at_one_norm_force",
                         ".TendonForceLengthCurve/strain_at_one_norm_force"};

@@ -70,7 +70,7 @@ void addConstantTorque(EncompassingModel& model, const MovingCoordinate& at) {
 }
 
 // τ(q) = F e·∂p/∂q = F(A cos(q + t) + B sin(q + t)) where the joint is a plain hinge, with e
-// horizontal, p the mass centre of the hand and t the known turn of the arm.
+// horizontal, p the mass centre of the hand and t the known turn of the system.
 void addHandForce(EncompassingModel& model) {
   // the force of one formula acts on one coordinate
   const Vector3d e = horizontal(model);

@@ -19,9 +19,9 @@ std::vector<std::string> synergists(const EncompassingModel& model, std::size_t 
   with.muscles[muscle].enabled = true;
   std::vector<std::string> names;
   try {
-    const MusculoskeletalSystem arm(with, model.armOptions());
-    const Eigen::MatrixXd momentArms = model.momentArms(arm);
-    const auto& muscles = arm.muscles();
+    const MusculoskeletalSystem system(with, model.systemOptions());
+    const Eigen::MatrixXd momentArms = model.momentArms(system);
+    const auto& muscles = system.muscles();
     const auto own = std::find_if(muscles.begin(), muscles.end(), [&](const SystemMuscle& one) {
       return one.name == with.muscles[muscle].name;
     });

@@ -27,22 +27,22 @@ Turning<Single> turningPoint(const End& end) {
 
 class HingeCompiler {
  public:
-  explicit HingeCompiler(const MusculoskeletalSystem& arm)
-      : arm_(&arm), moved_(arm.skeleton().numSegments()) {}
+  explicit HingeCompiler(const MusculoskeletalSystem& system)
+      : system_(&system), moved_(system.skeleton().numSegments()) {}
 
   std::optional<HingeModel<Single>> compile() {
-    const Skeleton& skeleton = arm_->skeleton();
+    const Skeleton& skeleton = system_->skeleton();
     if (skeleton.numCoordinates() != 1 || !skeleton.hasConstantInertia()) return {};
-    if (!arm_->bodyForces().empty() || !arm_->elasticPaths().empty()) return {};
+    if (!system_->bodyForces().empty() || !system_->elasticPaths().empty()) return {};
     skeleton.motions<double, 1>(zero_, moved_.data());
     if (moved_[1].first[0].R.isZero(0)) return {};  // a slider
     const InertiaJet<1> inertia = skeleton.inertia<1>(zero_, moved_.data());
     out_.mass = inertia.massMatrix(0, 0);
     out_.gravityCosine = -inertia.d2V(0, 0);
     out_.gravitySine = inertia.dV[0];
-    out_.hasForces = !arm_->coordinateForces().empty();
-    out_.forces[0] = &arm_->coordinateForces();
-    for (const SystemMuscle& muscle : arm_->muscles()) {
+    out_.hasForces = !system_->coordinateForces().empty();
+    out_.forces[0] = &system_->coordinateForces();
+    for (const SystemMuscle& muscle : system_->muscles()) {
       if (!add(muscle)) return {};
     }
     return std::move(out_);
@@ -113,7 +113,7 @@ class HingeCompiler {
     return true;
   }
 
-  const MusculoskeletalSystem* arm_;
+  const MusculoskeletalSystem* system_;
   const Angle zero_{0.0};
   std::vector<Motion> moved_;
   HingeModel<Single> out_;
@@ -169,9 +169,9 @@ bool match(const std::vector<A>& a, const std::vector<A>& b, Same same) {
 
 }  // namespace
 
-std::optional<HingeModel<Single>> hingeModel(const MusculoskeletalSystem& arm) {
-  if (!arm.prescribed().empty()) return {};
-  return HingeCompiler(arm).compile();
+std::optional<HingeModel<Single>> hingeModel(const MusculoskeletalSystem& system) {
+  if (!system.prescribed().empty()) return {};
+  return HingeCompiler(system).compile();
 }
 
 bool sameStructure(const HingeModel<Single>& a, const HingeModel<Single>& b) {
@@ -194,10 +194,10 @@ bool sameStructure(const HingeModel<Single>& a, const HingeModel<Single>& b) {
          });
 }
 
-HingeModel<Lanes> lanesFor(const HingeModel<Single>& arm) {
+HingeModel<Lanes> lanesFor(const HingeModel<Single>& system) {
   HingeModel<Lanes> lanes;
-  lanes.hasForces = arm.hasForces;
-  for (const LaneMuscle<Single>& m : arm.muscles) {
+  lanes.hasForces = system.hasForces;
+  for (const LaneMuscle<Single>& m : system.muscles) {
     LaneMuscle<Lanes> muscle{};
     muscle.hasFibreState = m.hasFibreState;
     muscle.firstCondition = m.firstCondition;
@@ -205,14 +205,14 @@ HingeModel<Lanes> lanesFor(const HingeModel<Single>& arm) {
     muscle.firstVariant = m.firstVariant;
     lanes.muscles.push_back(muscle);
   }
-  lanes.conditions.resize(arm.conditions.size());
-  for (const Variant<Single>& v : arm.variants) {
+  lanes.conditions.resize(system.conditions.size());
+  for (const Variant<Single>& v : system.variants) {
     lanes.variants.push_back({Real{}, v.firstSpan, v.numSpans});
   }
-  for (const LaneSpan<Single>& s : arm.spans) {
+  for (const LaneSpan<Single>& s : system.spans) {
     lanes.spans.push_back({Real{}, Real{}, Real{}, s.firstCylinder, s.numCylinders});
   }
-  for (const Cylinder<Single>& c : arm.cylinders) {
+  for (const Cylinder<Single>& c : system.cylinders) {
     Cylinder<Lanes> cylinder{};
     cylinder.surface = c.surface;
     cylinder.fixed[0] = c.fixed[0];
@@ -222,16 +222,16 @@ HingeModel<Lanes> lanesFor(const HingeModel<Single>& arm) {
   return lanes;
 }
 
-void setLane(HingeModel<Lanes>& lanes, int lane, const HingeModel<Single>& arm) {
-  putAll(lanes.muscles, lane, arm.muscles);
-  putAll(lanes.conditions, lane, arm.conditions);
-  putAll(lanes.variants, lane, arm.variants);
-  putAll(lanes.spans, lane, arm.spans);
-  putAll(lanes.cylinders, lane, arm.cylinders);
-  lanes.mass[lane] = arm.mass;
-  lanes.gravityCosine[lane] = arm.gravityCosine;
-  lanes.gravitySine[lane] = arm.gravitySine;
-  lanes.forces[lane] = arm.forces[0];
+void setLane(HingeModel<Lanes>& lanes, int lane, const HingeModel<Single>& system) {
+  putAll(lanes.muscles, lane, system.muscles);
+  putAll(lanes.conditions, lane, system.conditions);
+  putAll(lanes.variants, lane, system.variants);
+  putAll(lanes.spans, lane, system.spans);
+  putAll(lanes.cylinders, lane, system.cylinders);
+  lanes.mass[lane] = system.mass;
+  lanes.gravityCosine[lane] = system.gravityCosine;
+  lanes.gravitySine[lane] = system.gravitySine;
+  lanes.forces[lane] = system.forces[0];
 }
 
 }  // namespace bio::lanes

@@ -22,36 +22,36 @@ struct HingeModel {
   const CoordinateForces* forces[width] = {};
 
   LaneModel<Of> view() {
-    LaneModel<Of> arm{static_cast<int>(muscles.size()),
-                      mass,
-                      gravityCosine,
-                      gravitySine,
-                      hasForces,
-                      {},
-                      muscles.data(),
-                      conditions.data(),
-                      variants.data(),
-                      spans.data(),
-                      cylinders.data()};
-    for (int l = 0; l < width; ++l) arm.forces[l] = forces[l];
-    return arm;
+    LaneModel<Of> system{static_cast<int>(muscles.size()),
+                         mass,
+                         gravityCosine,
+                         gravitySine,
+                         hasForces,
+                         {},
+                         muscles.data(),
+                         conditions.data(),
+                         variants.data(),
+                         spans.data(),
+                         cylinders.data()};
+    for (int l = 0; l < width; ++l) system.forces[l] = forces[l];
+    return system;
   }
 };
 
-/// An arm with one segment that turns about one hinge, in the form of the lanes: every point and
+/// a system with one segment that turns about one hinge, in the form of the lanes: every point and
 /// what is seen of it from a cylinder is middle + along·cos q + across·sin q. Muscles' laws and
-/// passive forces are those of `arm`, which must outlive it; they are set in lane 0.
-/// Nothing if the arm has more coordinates, a slider, path points that move in their bodies,
+/// passive forces are those of `system`, which must outlive it; they are set in lane 0.
+/// Nothing if the system has more coordinates, a slider, path points that move in their bodies,
 /// conditions on a coupled coordinate, or paths over spheres.
-std::optional<HingeModel<Single>> hingeModel(const MusculoskeletalSystem& arm);
+std::optional<HingeModel<Single>> hingeModel(const MusculoskeletalSystem& system);
 
-/// Whether two arms differ in numbers alone.
+/// Whether two systems differ in numbers alone.
 bool sameStructure(const HingeModel<Single>& a, const HingeModel<Single>& b);
 
-/// Lists for arms of this structure; every lane must be set before use.
-HingeModel<Lanes> lanesFor(const HingeModel<Single>& arm);
+/// Lists for systems of this structure; every lane must be set before use.
+HingeModel<Lanes> lanesFor(const HingeModel<Single>& system);
 
-/// An arm of the same structure into a lane.
-void setLane(HingeModel<Lanes>& lanes, int lane, const HingeModel<Single>& arm);
+/// A system of the same structure into a lane.
+void setLane(HingeModel<Lanes>& lanes, int lane, const HingeModel<Single>& system);
 
 }  // namespace bio::lanes

@@ -6,11 +6,11 @@ namespace bio::lanes {
 
 using Eigen::Index;
 
-ActivationCourse::ActivationCourse(const MusculoskeletalSystem& arm,
+ActivationCourse::ActivationCourse(const MusculoskeletalSystem& system,
                                    const ExcitationSignal& excitation, const SystemState& start,
                                    const SimulationOptions& options)
     : options_(&options),
-      player_(arm, excitation, options.startTime),
+      player_(system, excitation, options.startTime),
       middle_(start.activation.size(), static_cast<Index>(stepping::numRows(options))),
       end_(middle_),
       activation_(start.activation) {
@@ -29,14 +29,14 @@ void ActivationCourse::reach(Index k) {
   }
 }
 
-LaneDriver::LaneDriver(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+LaneDriver::LaneDriver(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                        const SystemState& start, const SimulationOptions& options,
                        ActivationCourse& course, double mass)
-    : arm_(&arm),
+    : system_(&system),
       options_(&options),
       course_(&course),
-      player_(arm, excitation, options.startTime),
-      recorder_(arm, stepping::numRows(options)),
+      player_(system, excitation, options.startTime),
+      recorder_(system, stepping::numRows(options)),
       mass_(mass),
       rows_(stepping::numRows(options)),
       t0_(stepping::rowTime(options, 0)),
@@ -56,7 +56,7 @@ LaneDriver::LaneDriver(const MusculoskeletalSystem& arm, const ExcitationSignal&
       kept_(activation_),
       fibreEnd_(fibre_),
       search_(options.newtonTolerance) {
-  if (!arm.switches().empty()) sides_.emplace(arm);
+  if (!system.switches().empty()) sides_.emplace(system);
   recorder_.add(options.startTime, start.q, start.qDot, activation_, fibre_, 0, 0, 0);
 }
 
@@ -124,7 +124,7 @@ void LaneDriver::take(int lane, const LaneStep& step) {
   works_[1] = step.passiveWork[lane];
   works_[2] = step.externalWork[lane];
 
-  if (phase_ == Phase::wholeStep && search_.begin(arm_->switches(), &q_, &qEnd_)) {
+  if (phase_ == Phase::wholeStep && search_.begin(system_->switches(), &q_, &qEnd_)) {
     meetSwitch();
     return;
   }

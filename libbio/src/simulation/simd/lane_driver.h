@@ -17,7 +17,7 @@ namespace bio::lanes {
 class ActivationCourse {
  public:
   /// All must outlive the course.
-  ActivationCourse(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+  ActivationCourse(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                    const SystemState& start, const SimulationOptions& options);
 
   /// Activations in the step that ends row k ≥ 1. Rows are computed when they are first asked for.
@@ -46,8 +46,8 @@ class ActivationCourse {
 class LaneDriver {
  public:
   /// All must outlive the driver.
-  /// @param course  of this arm, excitation and start
-  LaneDriver(const MusculoskeletalSystem& arm, const ExcitationSignal& excitation,
+  /// @param course  of this system, excitation and start
+  LaneDriver(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
              const SystemState& start, const SimulationOptions& options, ActivationCourse& course,
              double mass);
 
@@ -83,7 +83,7 @@ class LaneDriver {
   void meetFailure();
   void accept(bool endsTarget);
 
-  const MusculoskeletalSystem* arm_;
+  const MusculoskeletalSystem* system_;
   const SimulationOptions* options_;
   ActivationCourse* course_;
   bool within_ = false;  ///< the step begins or ends within a row

@@ -15,14 +15,14 @@ bool touchesWithin(const Cylinder<Lanes>& cylinder, const Real (&P)[3], const Re
                          {Q[0][lane], Q[1][lane], Q[2][lane]});
 }
 
-void passiveForce(const LaneModel<Lanes>& arm, const Mask& lanes, const Real& q, const Real& qDot,
-                  PassiveForce& out) {
+void passiveForce(const LaneModel<Lanes>& system, const Mask& lanes, const Real& q,
+                  const Real& qDot, PassiveForce& out) {
   using Number = Eigen::Matrix<double, 1, 1>;
   out = {Real{}, Real{}, Real{}};
   for (int l = 0; l < width; ++l) {
     if (lanes[l] == 0) continue;
     Number force(0.0), byPosition(0.0), bySpeed(0.0);
-    arm.forces[l]->add<1>(Number(q[l]), Number(qDot[l]), force, byPosition, bySpeed);
+    system.forces[l]->add<1>(Number(q[l]), Number(qDot[l]), force, byPosition, bySpeed);
     out.force[l] = force[0];
     out.dForce_dq[l] = byPosition(0, 0);
     out.dForce_dqDot[l] = bySpeed(0, 0);

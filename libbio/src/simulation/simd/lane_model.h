@@ -1,6 +1,6 @@
 #pragma once
 
-// What the step of lane_step.h works on: arms with one hinge and the same structure, their numbers
+// What the step of lane_step.h works on: systems with one hinge and the same structure, their numbers
 // side by side. Plain data and pointers, so that files of several instruction sets can read it.
 
 #include "simulation/simd/lane_real.h"
@@ -118,10 +118,10 @@ struct LaneStep {
   Mask converged;
   Real pEnd;
   Real muscleWork, passiveWork, externalWork;  ///< [J]
-  MuscleStep* muscles;                         ///< all of the arm
+  MuscleStep* muscles;                         ///< all of the system
 };
 
-/// The solver of steps of some arms.
+/// The solver of steps of some systems.
 class LaneSolver {
  public:
   LaneSolver() = default;
@@ -134,8 +134,8 @@ class LaneSolver {
 };
 /// Made with `new`; what the model points to must outlive it. One per instruction set, all with the
 /// same results: they round alike, since nothing is fused.
-LaneSolver* plainSolver(const LaneModel<Lanes>& arm);
-LaneSolver* wideSolver(const LaneModel<Lanes>& arm);
+LaneSolver* plainSolver(const LaneModel<Lanes>& system);
+LaneSolver* wideSolver(const LaneModel<Lanes>& system);
 
 // What the step asks for rarely
 // -----------------------------------------
@@ -148,7 +148,7 @@ bool touchesWithin(const Cylinder<Lanes>& cylinder, const Real (&P)[3], const Re
 struct PassiveForce {
   Real force, dForce_dq, dForce_dqDot;
 };
-void passiveForce(const LaneModel<Lanes>& arm, const Mask& lanes, const Real& q, const Real& qDot,
-                  PassiveForce& out);
+void passiveForce(const LaneModel<Lanes>& system, const Mask& lanes, const Real& q,
+                  const Real& qDot, PassiveForce& out);
 
 }  // namespace bio::lanes

@@ -131,8 +131,8 @@ inline Real logarithm(const Real& x) {
   // the exponent as a number: in the last bits of the rounder
   const Real n0 =
       reinterpret_cast<Real>(exponent + reinterpret_cast<Mask>(same(rounder))) - rounder;
-  const Mask one = reinterpret_cast<Mask>(same(1));
-  const Real m0 = reinterpret_cast<Real>((bits & 0xfffffffffffff) | one);
+  const Mask mask = reinterpret_cast<Mask>(same(1));
+  const Real m0 = reinterpret_cast<Real>((bits & 0xfffffffffffff) | mask);
   const Mask large = m0 > 1.4142135623730951;
   const Real m = choose(large, m0 / 2, m0);
   const Real n = choose(large, n0 + 1, n0);

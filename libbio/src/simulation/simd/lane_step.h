@@ -17,14 +17,14 @@ inline Mask isLast(const Real& correction, const Real& previous, double toleranc
                                      (correction * ratio * ratio < 0.01 * tolerance));
 }
 
-/// The step's solver for some arms, with their muscles' laws.
+/// The step's solver for some systems, with their muscles' laws.
 class StepSolver final : public LaneSolver {
  public:
-  explicit StepSolver(const LaneModel<Lanes>& arm)
-      : arm_(arm), laws_(new AnyLaneMuscle[static_cast<std::size_t>(arm.numMuscles)]) {
+  explicit StepSolver(const LaneModel<Lanes>& system)
+      : system_(system), laws_(new AnyLaneMuscle[static_cast<std::size_t>(system.numMuscles)]) {
     LawNumbers law;
-    for (int i = 0; i < arm.numMuscles; ++i) {
-      gather(arm.muscles[i].of, law);
+    for (int i = 0; i < system.numMuscles; ++i) {
+      gather(system.muscles[i].of, law);
       laws_[i].set(law);
     }
   }
@@ -45,17 +45,17 @@ class StepSolver final : public LaneSolver {
                 const Moving& moving, MuscleSums& sums);
   Real correctFibres(LaneStep& step, const Real& dq);
 
-  LaneModel<Lanes> arm_;
+  LaneModel<Lanes> system_;
   AnyLaneMuscle* laws_;
 };
 
 /// Forces of the muscles, and fibre lengths eliminated one by one.
 inline void StepSolver::addMuscles(LaneStep& step, const Moving& moving, MuscleSums& sums) {
   const Real& h = step.length;
-  for (int i = 0; i < arm_.numMuscles; ++i) {
-    const LaneMuscle<Lanes>& muscle = arm_.muscles[i];
+  for (int i = 0; i < system_.numMuscles; ++i) {
+    const LaneMuscle<Lanes>& muscle = system_.muscles[i];
     MuscleStep& kept = step.muscles[i];
-    const PathJet path = muscleTendonLength(arm_, muscle, step.place, moving.turn);
+    const PathJet path = muscleTendonLength(system_, muscle, step.place, moving.turn);
     kept.momentArm = path.slope;
     if (!muscle.hasFibreState) {
       addRigid(laws_[i], kept, path, moving, sums);
@@ -95,27 +95,27 @@ inline void StepSolver::addRigid(const AnyLaneMuscle& law, MuscleStep& kept, con
 /// Makes fibres' corrections of their residuals; the largest, of ℓ0.
 inline Real StepSolver::correctFibres(LaneStep& step, const Real& dq) {
   Real largest = same(0);
-  for (int i = 0; i < arm_.numMuscles; ++i) {
+  for (int i = 0; i < system_.numMuscles; ++i) {
     MuscleStep& kept = step.muscles[i];
     const Real C_dq = -kept.dV_dMuscleTendonLength / 2 * kept.momentArm * dq;
     kept.residual = -(kept.residual + C_dq) * kept.inverse;  // now δℓ
-    largest = larger(largest, absolute(kept.residual) * arm_.muscles[i].perFibre);
+    largest = larger(largest, absolute(kept.residual) * system_.muscles[i].perFibre);
   }
   return largest;
 }
 
 /// See VariationalStepper::solve, whose comments are not repeated.
 inline void StepSolver::solve(LaneStep& step) {
-  const LaneModel<Lanes>& arm = arm_;
+  const LaneModel<Lanes>& system = system_;
   constexpr double largestTurn = 0.3;
   constexpr double largestFibreStep = 0.25;
   constexpr double near = 7e-6;
   const Real none = same(0);
-  const Real one = same(1);
+  const Real real = same(1);
   const Real& h = step.length;
   const Real perStep = 1 / h;
   const Real share = step.symmetric ? h / 2 : h;
-  const Real dMv = arm.mass * perStep;
+  const Real dMv = system.mass * perStep;
   Mask running = step.wanted;
   step.converged = running ^ running;
   while (all(running == step.wanted)) {
@@ -127,12 +127,12 @@ inline void StepSolver::solve(LaneStep& step) {
     step.place = choose(absolute(q_m - step.place) < near, step.place, q_m);
 
     // skeleton and gravity
-    const Real Mv = arm.mass * v;
-    const Real L_q = arm.gravityCosine * turn.sine - arm.gravitySine * turn.cosine;
-    const Real dL_q = (arm.gravityCosine * turn.cosine + arm.gravitySine * turn.sine) / 2;
+    const Real Mv = system.mass * v;
+    const Real L_q = system.gravityCosine * turn.sine - system.gravitySine * turn.cosine;
+    const Real dL_q = (system.gravityCosine * turn.cosine + system.gravitySine * turn.sine) / 2;
 
     PassiveForce passive{none, none, none};
-    if (arm.hasForces) passiveForce(arm, running, q_m, v, passive);
+    if (system.hasForces) passiveForce(system, running, q_m, v, passive);
     const Real dPassive = passive.dForce_dq / 2 + passive.dForce_dqDot / h;
     MuscleSums sums{none, dPassive, none, none};
     addMuscles(step, {v, perStep, share, turn}, sums);
@@ -147,10 +147,10 @@ inline void StepSolver::solve(LaneStep& step) {
     // what is not a number, or wild, is given up
     running &= (size < 1e6) & (fibreSize < 1e6);
 
-    Real shorten = choose(size > largestTurn, largestTurn / size, one);
+    Real shorten = choose(size > largestTurn, largestTurn / size, real);
     shorten = choose(fibreSize * shorten > largestFibreStep, largestFibreStep / fibreSize, shorten);
     step.qEnd = choose(running, step.qEnd + shorten * dq, step.qEnd);
-    for (int i = 0; i < arm.numMuscles; ++i) {
+    for (int i = 0; i < system.numMuscles; ++i) {
       MuscleStep& kept = step.muscles[i];
       kept.fibreLengthEnd =
           choose(running, kept.fibreLengthEnd + shorten * kept.residual, kept.fibreLengthEnd);
@@ -165,7 +165,7 @@ inline void StepSolver::solve(LaneStep& step) {
     if (!any(last)) continue;
 
     // ends of the lanes that have come to theirs, to first order in the last correction
-    for (int i = 0; i < arm.numMuscles; ++i) {
+    for (int i = 0; i < system.numMuscles; ++i) {
       const MuscleStep& kept = step.muscles[i];
       force -= kept.dF_dFibreLength / 2 * kept.residual * kept.momentArm;
     }

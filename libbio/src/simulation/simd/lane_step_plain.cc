@@ -2,8 +2,8 @@
 
 namespace bio::lanes {
 
-LaneSolver* plainSolver(const LaneModel<Lanes>& arm) {
-  return new StepSolver(arm);
+LaneSolver* plainSolver(const LaneModel<Lanes>& system) {
+  return new StepSolver(system);
 }
 
 }  // namespace bio::lanes

@@ -37,7 +37,7 @@ struct Progress {
 
 struct Options {
   /// σ_y of each output [its unit]; empty: estimated from the data's third differences
-  std::optional<Whitening> outputSd;
+  std::optional<Whitening> sds;
   double latentTime = 0.08;        ///< ℓ [s] of the latent force
   double latentScale = 0.02;       ///< s of the prior exp(−σ_d/s), which favours σ_d = 0
   double latentTolerance = 0.075;  ///< largest σ_d that noise of the inputs may explain
@@ -180,7 +180,7 @@ struct Verdict {
   /// trials were therefore fitted, and none is left for validation (Options::secondLook).
   bool heldOutFitted = false;
 
-  Whitening outputSd;  ///< σ_y of each output
+  Whitening sds;  ///< σ_y of each output
   bool sdEstimated = false;
   RecordedNoise noise;                   ///< the samples that were used, and why others were not
   double latentSizeBefore = 0;           ///< σ_d with the base model

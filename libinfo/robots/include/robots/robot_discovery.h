@@ -42,7 +42,7 @@ struct DiscoveryRequest {
   std::size_t numHeldOut = 0;   ///< < trials.size(); tested by only
   std::optional<double> step;   ///< [s]; empty: that of `problem`, halved if need be
   DisagreementOptions problem;  ///< its `sds` also give the noise of the search
-  discover::Options search;     ///< heldOut and outputSd are set by discover()
+  discover::Options search;     ///< heldOut and sds are set by discover()
 };
 
 /// Findings of such a search.

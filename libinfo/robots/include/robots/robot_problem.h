@@ -69,7 +69,7 @@ class RobotProblem final : public discover::DiscoveryProblem {
     std::size_t start;  ///< index of the first quantity of its initial state
   };
   const OfTrial& of(int trial) const { return trials_.at(static_cast<std::size_t>(trial)); }
-  Response simulate(const OfTrial& one, const Eigen::VectorXd& values,
+  Response simulate(const OfTrial& trial, const Eigen::VectorXd& values,
                     const Eigen::VectorXd& latent, const std::vector<std::size_t>& shared,
                     bool derivatives, bool latentToo, double stepFactor) const;
 

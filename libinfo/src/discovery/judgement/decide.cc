@@ -96,7 +96,7 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
     decision.finding = Finding::unknown;
     decision.proxy = true;
     decision.probability = 0;
-    for (NamedEffect& one : decision.effects) one.probability = std::nan("");
+    for (NamedEffect& effect : decision.effects) effect.probability = std::nan("");
     return decision;
   }
   decision.finding = !alone ? Finding::ambiguous : parameters ? Finding::parameter : Finding::named;

@@ -79,14 +79,13 @@ double Distinction::least() const {
 }
 
 Distinction distinction(const DiscoveryProblem& planned, const PresentEffect& first,
-                        const PresentEffect& second, const Whitening& outputSd) {
+                        const PresentEffect& second, const Whitening& sds) {
   check(planned, first);
   check(planned, second);
   if (first.candidate == second.candidate)
     throw std::invalid_argument("distinction: the two effects must differ");
-  if (!outputSd.isPositive())
-    throw std::invalid_argument(
-        fmt::format("distinction: noise = {}, must be > 0", outputSd.sd(0)));
+  if (!sds.isPositive())
+    throw std::invalid_argument(fmt::format("distinction: noise = {}, must be > 0", sds.sd(0)));
   std::vector<int> trials;
   Index samples = 0;
   for (int t = 0; t < planned.numTrials(); ++t) {
@@ -105,7 +104,7 @@ Distinction distinction(const DiscoveryProblem& planned, const PresentEffect& fi
   for (const int t : trials) {
     const auto n = static_cast<Index>(planned.times(t).size());
     const auto whitened = [&](MatrixXd rows) {
-      outputSd.whiten(planned.outputOfSample(t), rows);
+      sds.whiten(planned.outputOfSample(t), rows);
       return rows;
     };
     const auto base = planned.predict(t, nominalValues(planned), {}, wanted, false);

@@ -75,18 +75,18 @@ PositionBreak largestBreak(const std::vector<Visit>& nodes, double squares) {
   const double least = kLeastSpread * kLeastSpread * squares / static_cast<double>(nodes.size());
   for (int k = 1; k < kThresholds; ++k)
     for (const bool above : {true, false}) {
-      const PositionBreak one =
+      const PositionBreak break =
           breakAt(nodes, from + k * range / kThresholds, above, kBeside * range, least);
-      if (std::abs(one.z) > std::abs(best.z)) best = one;
+      if (std::abs(break.z) > std::abs(best.z)) best = break;
     }
   best.margin = kMargin * range;
   return best;
 }
 
 std::optional<PositionBreak> breakOf(const DiscoveryProblem& data, const Options& options,
-                                     const Whitening& outputSd) {
+                                     const Whitening& sds) {
   const std::vector<int> trials = fittedTrials(data, options);
-  Search search(data, trials, options, outputSd, [](const std::string&) {});
+  Search search(data, trials, options, sds, [](const std::string&) {});
   const auto tracked = search.tracked({}, nominalValues(data));
   if (!tracked) return {};
   const NodeStates states = statesAtNodes(*tracked->of, tracked->fit);
@@ -100,9 +100,9 @@ std::optional<PositionBreak> breakOf(const DiscoveryProblem& data, const Options
       squares += force.squaredNorm();
       for (Index k = 1; k < force.size(); ++k) nodes.push_back({positions[t][k], force[k]});
     }
-    PositionBreak one = largestBreak(nodes, squares);
-    one.axis = axis;
-    if (std::abs(one.z) > std::abs(best.z)) best = one;
+    PositionBreak break = largestBreak(nodes, squares);
+    break.axis = axis;
+    if (std::abs(break.z) > std::abs(best.z)) best = break;
   }
   if (std::abs(best.z) < kStandardErrors) return {};
   return best;
@@ -112,8 +112,8 @@ std::optional<PositionBreak> breakOf(const DiscoveryProblem& data, const Options
 
 std::optional<PositionBreak> positionBreak(const DiscoveryProblem& data, const Options& options,
                                            const Verdict& verdict) {
-  if (verdict.noise.usesAll()) return breakOf(data, options, verdict.outputSd);
-  return breakOf(SelectedSamples(data, verdict.noise.kept), options, verdict.outputSd);
+  if (verdict.noise.usesAll()) return breakOf(data, options, verdict.sds);
+  return breakOf(SelectedSamples(data, verdict.noise.kept), options, verdict.sds);
 }
 
 }  // namespace info::discover

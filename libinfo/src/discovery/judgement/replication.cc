@@ -19,17 +19,17 @@ bool mayReplicate(const DiscoveryProblem& data, const Effects& effects) {
   });
 }
 
-bool agree(const Estimate& one, const Estimate& other) {
-  return std::abs(one.value - other.value) <= kAgree * std::hypot(one.sd, other.sd);
+bool agree(const Estimate& estimate, const Estimate& other) {
+  return std::abs(estimate.value - other.value) <= kAgree * std::hypot(estimate.sd, other.sd);
 }
 
 }  // namespace
 
 std::optional<Replication> replicate(const DiscoveryProblem& data, const Options& options,
-                                     const Whitening& outputSd, const Entry& entry,
+                                     const Whitening& sds, const Entry& entry,
                                      const Search::Report& report) {
   if (entry.effects.empty() || !mayReplicate(data, entry.effects)) return {};
-  Search search(data, options.heldOut, options, outputSd, report);
+  Search search(data, options.heldOut, options, sds, report);
   Effects effects;
   try {
     search.calibrate();

@@ -14,7 +14,7 @@ namespace info::discover {
 /// if the model cannot be simulated.
 /// @param entry  the effects as fitted to the training trials
 std::optional<Replication> replicate(const DiscoveryProblem& data, const Options& options,
-                                     const Whitening& outputSd, const Entry& entry,
+                                     const Whitening& sds, const Entry& entry,
                                      const Search::Report& report);
 
 }  // namespace info::discover

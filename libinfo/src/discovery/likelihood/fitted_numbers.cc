@@ -7,14 +7,15 @@ namespace info::discover {
 std::vector<FittedNumber> fittedNumbers(const DiscoveryProblem& data, const Verdict& verdict) {
   std::vector<FittedNumber> numbers;
   const auto add = [&](const std::vector<Estimate>& estimates) {
-    for (const Estimate& one : estimates) {
-      if (std::any_of(numbers.begin(), numbers.end(),
-                      [&](const FittedNumber& known) { return known.quantity == one.quantity; }))
+    for (const Estimate& estimate : estimates) {
+      if (std::any_of(numbers.begin(), numbers.end(), [&](const FittedNumber& known) {
+            return known.quantity == estimate.quantity;
+          }))
         continue;
-      const Quantity& quantity = data.quantities()[one.quantity];
+      const Quantity& quantity = data.quantities()[estimate.quantity];
       const double prior = quantity.sd * (quantity.logarithmic ? quantity.nominal : 1);
-      numbers.push_back({one.quantity, quantity.name, quantity.unit, quantity.nominal, one.value,
-                         one.sd, prior, one.surprise});
+      numbers.push_back({estimate.quantity, quantity.name, quantity.unit, quantity.nominal,
+                         estimate.value, estimate.sd, prior, estimate.surprise});
     }
   };
   for (const NamedEffect& effect : verdict.effects) add(effect.estimates);

@@ -138,7 +138,7 @@ void drawInto(NonparametricForce& drawn, const Family& family, const Fit& fit,
 
 std::optional<NonparametricForce> raceNonparametric(const Search& search, const Effects& chosen,
                                                     const Fit& smoothing, const Options& options,
-                                                    const Whitening& outputSd,
+                                                    const Whitening& sds,
                                                     const Search::Report& report, int& fits) {
   const NodeStates states = statesAtNodes(search.likelihood(), smoothing);
   std::vector<Family> families;
@@ -158,7 +158,7 @@ std::optional<NonparametricForce> raceNonparametric(const Search& search, const 
     const auto known = searchMemoryOf(search, chosen, *widened);
     const auto formula = placeOf(*widened, "formula");
     if (!known || !formula) return {};
-    Search race(*widened, search.likelihood().trials(), options, outputSd, report);
+    Search race(*widened, search.likelihood().trials(), options, sds, report);
     race.take(*known);
     const auto net = [&](const Effects& effects) {
       return race.at(effects).score - options.evidence * static_cast<double>(effects.size());

@@ -16,7 +16,7 @@ namespace info::discover {
 /// @param fits is increased by the number of fits
 std::optional<NonparametricForce> raceNonparametric(const Search& search, const Effects& chosen,
                                                     const Fit& smoothing, const Options& options,
-                                                    const Whitening& outputSd,
+                                                    const Whitening& sds,
                                                     const Search::Report& report, int& fits);
 
 }  // namespace info::discover

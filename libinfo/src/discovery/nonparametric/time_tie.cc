@@ -48,10 +48,10 @@ TimeTie timeTie(const std::vector<std::vector<double>>& times,
   TimeTie tie;
   if (forces.size() < 2) return tie;
   double from = -HUGE_VAL, until = HUGE_VAL;
-  for (const std::vector<double>& one : times) {
-    if (one.size() < 2) return tie;
-    from = std::max(from, one.front());
-    until = std::min(until, one.back());
+  for (const std::vector<double>& time : times) {
+    if (time.size() < 2) return tie;
+    from = std::max(from, time.front());
+    until = std::min(until, time.back());
   }
   const auto n = static_cast<Index>(std::floor((until - from) / kSpacing)) + 1;
   if (n < 2 * kShortest) return tie;

@@ -20,11 +20,11 @@ std::vector<VectorXd> forceKept(std::vector<VectorXd> eta, double from, double t
 }
 
 Search::Search(const DiscoveryProblem& data, std::vector<int> trials, const Options& options,
-               const Whitening& outputSd, Report report)
+               const Whitening& sds, Report report)
     : data_(data),
       trials_(std::move(trials)),
       options_(options),
-      output_(outputSd),
+      output_(sds),
       report_(std::move(report)) {
   likelihood_.emplace(data_, trials_, nominalValues(data_), options_.latentTime);
   for (const NudgeStage& stage : nudgeStages) {

@@ -57,7 +57,7 @@ class Search {
  public:
   using Report = std::function<void(const std::string& doing)>;
   Search(const DiscoveryProblem& data, std::vector<int> trials, const Options& options,
-         const Whitening& outputSd, Report report);
+         const Whitening& sds, Report report);
 
   /// Calibrates the base model by homotopy in σ_d, from the nominal values; then from several
   /// starts without homotopy.

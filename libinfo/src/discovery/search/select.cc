@@ -142,13 +142,13 @@ class Selection {
     for (std::size_t i = 0; i < now.size(); ++i)
       for (std::size_t k = i + 1; k < now.size(); ++k) {
         const Effects rest = without(without(now, now[i]), now[k]);
-        for (const std::size_t one : rivalsOf(now, now[i]))
+        for (const std::size_t rival : rivalsOf(now, now[i]))
           for (const std::size_t other : rivalsOf(now, now[k])) {
-            const Effects first = with(rest, one);
-            if (one == other || search_.entries().count(with(first, other)) > 0) continue;
+            const Effects first = with(rest, rival);
+            if (rival == other || search_.entries().count(with(first, other)) > 0) continue;
             if (search_.entries().count(first) == 0) {
               if (search_.entries().count(rest) == 0) continue;
-              search_.race(rest, {one});
+              search_.race(rest, {rival});
             }
             search_.race(first, {other});
           }

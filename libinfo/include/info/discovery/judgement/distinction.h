@@ -36,6 +36,6 @@ struct Distinction {
 ///   is wrong, an amplitude has the value of an absent effect, or σ_y is not > 0
 /// @throws std::domain_error if one of them cannot be simulated
 Distinction distinction(const DiscoveryProblem& planned, const PresentEffect& first,
-                        const PresentEffect& second, const Whitening& outputSd);
+                        const PresentEffect& second, const Whitening& sds);
 
 }  // namespace info::discover

@@ -15,7 +15,7 @@
 
 namespace python {
 
-/// The options that most functions of arms have.
+/// The options that most functions of systems have.
 struct SystemChoice {
   std::vector<std::string> coordinates;  ///< free
   std::vector<std::string> prescribed;   ///< those of the trials, and of the model
@@ -23,7 +23,7 @@ struct SystemChoice {
   std::string integrator = "vi";
   std::optional<double> step;  ///< [s]; none: the integrator's default
 
-  bio::SystemOptions armOptions() const;
+  bio::SystemOptions systemOptions() const;
   /// @throws std::invalid_argument for an integrator that there is not
   bio::SimulationOptions simulation() const;
 };
@@ -35,10 +35,10 @@ using Names = std::variant<std::string, std::vector<std::string>>;
 /// @param mayBeNone  as freeByDefault has it; where something is prescribed none is an answer
 /// anyway
 /// @throws std::invalid_argument for a step that is not > 0, and what freeByDefault throws
-SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& trials,
-                       const Names& coordinate, const std::map<std::string, double>& lock,
-                       const std::string& integrator, std::optional<double> step,
-                       bool mayBeNone = false);
+SystemChoice systemChoice(const bio::Model& model, const std::vector<bio::Trial>& trials,
+                          const Names& coordinate, const std::map<std::string, double>& lock,
+                          const std::string& integrator, std::optional<double> step,
+                          bool mayBeNone = false);
 
 /// Defines a function whose last four arguments are those of armChoice(), by name.
 /// @param before  annotations of the arguments before them, and the docstring

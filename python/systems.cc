@@ -1,4 +1,4 @@
-#include "arms.h"
+#include "systems.h"
 
 #include <fmt/format.h>
 
@@ -71,18 +71,18 @@ bio::Model withExternalLoads(bio::Model model, const FileName& file) {
 
 py::dict coursesOf(const std::vector<bio::MeasuredChannel>& motions) {
   py::dict courses;
-  for (const bio::MeasuredChannel& one : motions) {
-    if (!one.what.isCoordinate()) continue;
-    courses[one.what.of.c_str()] = py::make_tuple(one.times, one.values);
+  for (const bio::MeasuredChannel& channel : motions) {
+    if (!channel.what.isCoordinate()) continue;
+    courses[channel.what.of.c_str()] = py::make_tuple(channel.times, channel.values);
   }
   return courses;
 }
 
 py::dict channelsOf(const bio::Trial& trial) {
   py::dict channels;
-  for (const bio::MeasuredChannel& one : trial.measured) {
-    if (one.what.isCoordinate()) continue;
-    channels[bio::nameOf(one.what).c_str()] = py::make_tuple(one.times, one.values);
+  for (const bio::MeasuredChannel& channel : trial.measured) {
+    if (channel.what.isCoordinate()) continue;
+    channels[bio::nameOf(channel.what).c_str()] = py::make_tuple(channel.times, channel.values);
   }
   return channels;
 }
@@ -90,28 +90,28 @@ py::dict channelsOf(const bio::Trial& trial) {
 std::vector<std::string> coordinatesOf(const bio::Model& model) {
   std::vector<std::string> names;
   for (const bio::Joint& joint : model.joints) {
-    for (const bio::Coordinate& one : joint.coordinates) names.push_back(one.name);
+    for (const bio::Coordinate& coordinate : joint.coordinates) names.push_back(coordinate.name);
   }
   return names;
 }
 
 std::vector<std::string> musclesOf(const bio::Model& model) {
   std::vector<std::string> names;
-  for (const bio::Muscle& one : model.muscles) {
-    if (one.enabled) names.push_back(one.name);
+  for (const bio::Muscle& muscle : model.muscles) {
+    if (muscle.enabled) names.push_back(muscle.name);
   }
   return names;
 }
 
 /// Root mean square error against what was measured, by coordinate.
-py::dict errorsOf(const bio::MusculoskeletalSystem& arm, const bio::Trial& trial,
+py::dict errorsOf(const bio::MusculoskeletalSystem& system, const bio::Trial& trial,
                   const bio::Trajectory& motion) {
   py::dict errors;
   for (const bio::MeasuredChannel& measured : trial.measured) {
     if (!measured.what.isCoordinate()) continue;
-    const bool isFree = arm.skeleton().indexOf(measured.what.of) >= 0;
+    const bool isFree = system.skeleton().indexOf(measured.what.of) >= 0;
     if (isFree && motion.time.back() >= measured.times[0]) {
-      errors[measured.what.of.c_str()] = bio::compareWithMeasured(arm, motion, measured).rms;
+      errors[measured.what.of.c_str()] = bio::compareWithMeasured(system, motion, measured).rms;
     }
   }
   return errors;
@@ -119,16 +119,16 @@ py::dict errorsOf(const bio::MusculoskeletalSystem& arm, const bio::Trial& trial
 
 py::dict channelErrorsOf(const bio::TrialReplay& replay) {
   py::dict errors;
-  for (const bio::ChannelError& one : replay.channelErrors) {
-    errors[bio::nameOf(one.what).c_str()] = one.error.rms;
+  for (const bio::ChannelError& error : replay.channelErrors) {
+    errors[bio::nameOf(error.what).c_str()] = error.error.rms;
   }
   return errors;
 }
 
-py::dict reactionsOf(const bio::MusculoskeletalSystem& arm, const bio::Trajectory& motion) {
+py::dict reactionsOf(const bio::MusculoskeletalSystem& system, const bio::Trajectory& motion) {
   py::dict reactions;
-  for (const int k : arm.prescribed()) {
-    const std::string& name = arm.skeleton().coordinates()[static_cast<std::size_t>(k)].name;
+  for (const int k : system.prescribed()) {
+    const std::string& name = system.skeleton().coordinates()[static_cast<std::size_t>(k)].name;
     reactions[name.c_str()] = Eigen::VectorXd(motion.reaction.row(k));
   }
   return reactions;
@@ -138,7 +138,7 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
                   const std::map<std::string, double>& initial, bool strict,
                   const Names& coordinate, const std::map<std::string, double>& lock,
                   const std::string& integrator, std::optional<double> step) {
-  const SystemChoice choice = armChoice(given, {trial}, coordinate, lock, integrator, step);
+  const SystemChoice choice = systemChoice(given, {trial}, coordinate, lock, integrator, step);
   bio::requireLoadsCover(given.externalLoads, trial.times[0], trial.times[0] + trial.duration());
   bio::TrialReplay replayed;
   const bio::Trajectory& motion = replayed.motion;
@@ -146,28 +146,29 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
   double energyError = 0;
   std::optional<bio::LeftRange> left;
   std::optional<bio::StepEffect> ofStep;
-  std::unique_ptr<bio::MusculoskeletalSystem> arm;
+  std::unique_ptr<bio::MusculoskeletalSystem> system;
   interruptible([&](const std::atomic<bool>& goOn) {
     const bio::Model model = trial.known.any()
                                  ? bio::discover::withExperimentalConditions(
-                                       given, choice.armOptions(), choice.coordinates, trial)
+                                       given, choice.systemOptions(), choice.coordinates, trial)
                                  : given;
-    arm = std::make_unique<bio::MusculoskeletalSystem>(model, choice.armOptions());
+    system = std::make_unique<bio::MusculoskeletalSystem>(model, choice.systemOptions());
     bio::SimulationOptions options = choice.simulation();
     options.step = bio::stepOf(model, options.integrator, choice.step);
     options = during(trial, options);
     options.progress = [&](double) { return goOn.load(); };
     replayed =
-        bio::replayTrial(*arm, trial, options, bio::beginningOf(trial, model, *arm, initial));
-    muscles = bio::reportMuscles(*arm, motion);
-    energyError = bio::energyError(*arm, motion);
-    left = bio::leftRange(*arm, motion);
-    ofStep = bio::effectOfDoubtfulStep(*arm, trial, replayed, choice.step.has_value());
+        bio::replayTrial(*system, trial, options, bio::beginningOf(trial, model, *system, initial));
+    muscles = bio::reportMuscles(*system, motion);
+    energyError = bio::energyError(*system, motion);
+    left = bio::leftRange(*system, motion);
+    ofStep = bio::effectOfDoubtfulStep(*system, trial, replayed, choice.step.has_value());
   });
   if (strict && left) throw std::runtime_error(left->what);
   std::vector<std::string> coordinates, names;
-  for (const auto& one : arm->skeleton().coordinates()) coordinates.push_back(one.name);
-  for (const auto& one : arm->muscles()) names.push_back(one.name);
+  for (const auto& coordinate : system->skeleton().coordinates())
+    coordinates.push_back(coordinate.name);
+  for (const auto& muscle : system->muscles()) names.push_back(muscle.name);
   return results(
       "time"_a = py::array_t<double>(py::cast(motion.time)), "coordinates"_a = coordinates,
       "muscles"_a = names, "q"_a = motion.q.transpose().eval(),
@@ -176,18 +177,18 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
       "fibre_length"_a = motion.fibreLength.transpose().eval(),
       "tendon_force"_a = muscles.tendonForce.transpose().eval(),
       "moment_arm"_a = muscles.momentArm.transpose().eval(),
-      "reaction"_a = reactionsOf(*arm, motion), "rms_error"_a = errorsOf(*arm, trial, motion),
+      "reaction"_a = reactionsOf(*system, motion), "rms_error"_a = errorsOf(*system, trial, motion),
       "channel_rms_error"_a = channelErrorsOf(replayed), "energy_error"_a = energyError,
       "outcome"_a = bio::name(motion.outcome), "why"_a = motion.why,
       "left_range"_a = left ? left->what : "", "start_from"_a = bio::name(replayed.beginning.from),
       "step"_a = replayed.options.step, "step_too_long"_a = ofStep ? bio::describe(*ofStep) : "",
       "steps"_a = motion.steps, "newton_iterations"_a = motion.newtonIterations,
-      "warnings"_a = arm->warnings());
+      "warnings"_a = system->warnings());
 }
 
 }  // namespace
 
-bio::SystemOptions SystemChoice::armOptions() const {
+bio::SystemOptions SystemChoice::systemOptions() const {
   bio::SystemOptions options;
   options.skeleton.freeCoordinates = coordinates;
   options.skeleton.freeCoordinates.insert(options.skeleton.freeCoordinates.end(),
@@ -209,9 +210,10 @@ bio::SimulationOptions SystemChoice::simulation() const {
   return options;
 }
 
-SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& trials,
-                       const Names& coordinate, const std::map<std::string, double>& lock,
-                       const std::string& integrator, std::optional<double> step, bool mayBeNone) {
+SystemChoice systemChoice(const bio::Model& model, const std::vector<bio::Trial>& trials,
+                          const Names& coordinate, const std::map<std::string, double>& lock,
+                          const std::string& integrator, std::optional<double> step,
+                          bool mayBeNone) {
   if (step && !(*step > 0)) {
     throw std::invalid_argument(fmt::format("step = {} s, must be > 0", *step));
   }
@@ -230,8 +232,8 @@ SystemChoice armChoice(const bio::Model& model, const std::vector<bio::Trial>& t
     std::set<std::string> locked = given, measured;
     for (const auto& [name, value] : lock) locked.insert(name);
     for (const bio::Trial& trial : trials)
-      for (const bio::MeasuredChannel& one : trial.measured)
-        if (one.what.isCoordinate()) measured.insert(one.what.of);
+      for (const bio::MeasuredChannel& channel : trial.measured)
+        if (channel.what.isCoordinate()) measured.insert(channel.what.of);
     free = bio::freeByDefault(model, locked, measured, mayBeNone || !prescribed.empty());
   }
   return {.coordinates = std::move(free),
