@@ -32,7 +32,7 @@ std::map<std::string, Value> byName(const Given& given) {
   return {};
 }
 
-/// What a search may change, within which limits, and what it observes.
+/// The inputs that a search may change, within which limits, and what it observes.
 struct SearchInputs {
   std::map<std::string, double> observe;  ///< name and noise; empty: the free coordinates
   double noise;                           ///< of these

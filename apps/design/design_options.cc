@@ -58,7 +58,7 @@ std::map<std::string, double> torquesOf(const DesignOptions& typed) {
   });
 }
 
-/// What would have no effect beside --dynamometer.
+/// Options that would have no effect beside --dynamometer.
 void refuseOptionsOfSearch(const DesignOptions& typed) {
   if (const std::vector<std::string> given = givenOf(typed.ofSearch); !given.empty()) {
     throw std::invalid_argument(

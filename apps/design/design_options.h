@@ -42,7 +42,7 @@ void checkDesignOptions(const DesignOptions& typed);
 bio::DesignLimits designLimits(const DesignOptions& typed,
                                const bio::MusculoskeletalSystem& system);
 
-/// What is observed: as typed, else all free coordinates.
+/// The observed channels: as typed, else all free coordinates.
 /// @throws std::invalid_argument what readObserved throws, or if there is nothing
 std::vector<bio::ChannelCandidate> designOutputs(const DesignOptions& typed,
                                                  const bio::Model& model,

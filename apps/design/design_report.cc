@@ -19,7 +19,7 @@ PlannedInputs planned(const DesignFindings& f) {
   return {f.model, f.design.inputs(), f.result.before.trial, f.result.after.trial};
 }
 
-/// Of what is predicted; a band shows what is observed.
+/// Figures of what is predicted; a band shows what is observed.
 Figure predicted(const DesignFindings& f, std::size_t channel) {
   const bio::MeasuredChannel& after = f.result.after.trial.measured[channel];
   const bio::MeasuredChannel& before = f.result.before.trial.measured[channel];

@@ -8,7 +8,7 @@
 #include "output/summary.h"
 #include "report/report.h"
 
-/// What the reports of all searches for experiments show.
+/// The parts that the reports of all searches for experiments show.
 namespace app {
 
 /// Angles are shown in degrees, everything else in its unit.
@@ -32,13 +32,13 @@ struct PlannedInputs {
   std::string torqueUnit(const std::string& coordinate) const;
 };
 
-/// What is predicted of one channel, without series.
+/// The predicted course of one channel, without series.
 /// @param caption  is followed by the limits, where there are any
 Figure predictionFigure(const PlannedInputs& planned, const bio::Observable& what,
                         const std::string& caption);
 /// Every torque and every excitation that was designed.
 void addInputFigures(const PlannedInputs& planned, Report& report);
-/// Of the torques and excitations.
+/// The limits of the torques and excitations.
 Table limitTable(const PlannedInputs& planned);
 /// Adds a row to it.
 void addLimit(Table& table, const std::string& quantity, double designed, double limit,
@@ -47,10 +47,11 @@ void addLimit(Table& table, const std::string& quantity, double designed, double
 Figure searchFigure(const bio::DesignSearchRecord& record, double before, double sign,
                     const std::string& yLabel);
 
-/// What all searches tell: what is observed, and of each free coordinate where it goes.
+/// The extremes of a free coordinate's planned motion.
 struct CoordinateMotion {
   double lowest, highest, fastest;  ///< [rad] or [m]
 };
+/// The summary of every search: what is observed, and where the free coordinates go.
 void tellPlan(const PlannedInputs& planned, const std::vector<bio::ChannelCandidate>& observed,
               double period, const std::vector<CoordinateMotion>& motions,
               const bio::DesignSearchRecord& record, Summary& summary);

@@ -6,7 +6,7 @@
 #include "bio/analysis/sensitivity_study.h"
 
 <<<<<<< HEAD:apps/options/observed_channels.h
-    /// What `sensitivity` and `design` observe.
+    /// The channels that `sensitivity` and `design` observe.
 =======
     /// Channels that `sensitivity` observes.
 >>>>>>> h4:apps/sensitivity/observed_channels.h

@@ -16,7 +16,7 @@ namespace {
 
 /// Meaning of a column in a model.
 enum class Meaning { coordinate, activation, fibreLength, nothingShown, foreign };
-enum class Unit { asHeader, degree, radian };
+enum class Unit { asHeader, degrees, radians };
 struct ColumnMeaning {
   Meaning meaning = Meaning::foreign;
   std::string name = {};       ///< of the coordinate or muscle
@@ -83,8 +83,8 @@ ColumnMeaning meaningOf(const std::string& column, const Model& model) {
   if (hasMuscle(model, column)) return {Meaning::nothingShown, column};
   // OpenSim 3: C_u is a speed, M.activation a state
   const std::pair<std::string, ColumnMeaning> endings[] = {
-      {"_deg", {Meaning::coordinate, "", Unit::degree}},
-      {"_rad", {Meaning::coordinate, "", Unit::radian}},
+      {"_deg", {Meaning::coordinate, "", Unit::degrees}},
+      {"_rad", {Meaning::coordinate, "", Unit::radians}},
       {"_u", {Meaning::nothingShown}},
       {"_speed", {Meaning::nothingShown}},
       {"_speed_rad_s", {Meaning::nothingShown}}};
@@ -148,7 +148,8 @@ SystemMotion readSystemMotion(const std::filesystem::path& file, const Model& mo
     switch (meaning.meaning) {
       case Meaning::coordinate:
         if (coordinateOf(model, "", meaning.name)->isRotation &&
-            (meaning.unit == Unit::degree || (meaning.unit == Unit::asHeader && table.inDegrees))) {
+            (meaning.unit == Unit::degrees ||
+             (meaning.unit == Unit::asHeader && table.inDegrees))) {
           values *= std::numbers::pi / 180;
         }
         motion.coordinates[meaning.name] = values;

@@ -192,7 +192,7 @@ void MusculoskeletalProblem::addStarts(OfTrial& trial) {
     if (encompassing_.system().isPrescribed(coordinates[i].index)) continue;
     const Coordinate& observed = coordinates[i].coordinate;
     const bool turns = observed.isRotation;
-    const double length = turns ? 1 : 0.125;  // [m] that stand for a radian
+    const double length = turns ? 1 : 0.125;  // [m] that stand for 1 rad
     const Observable what = ofCoordinate(observed.name);
     const auto& sensors = encompassing_.sensors();
     const auto sensor = std::find(sensors.begin(), sensors.end(), what);

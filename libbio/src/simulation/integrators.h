@@ -88,7 +88,7 @@ class StopWatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// What simulate() requires of its arguments. @throws std::invalid_argument
+/// The requirements of simulate() on its arguments. @throws std::invalid_argument
 void checkSimulation(const MusculoskeletalSystem& system, const ExcitationSignal& excitation,
                      const SystemState& start, const SimulationOptions& options);
 

@@ -187,8 +187,7 @@ std::string codeOf(const std::string& text) {
 }
 
 TEST(SourceTree, RetiredWordsDoNotComeBackAsNamesInCode) {
-  const std::vector<std::string> retired = {"hasOnlyAngles"};
-  // TODO: add these once they are gone: "sds", "lawFollows", "freeIndex", "radian"
+  const std::vector<std::string> retired = {"armOptions", "hasOnlyAngles", "outputSd", "radian"};
   EXPECT_EQ(codeOf("int a;  // radian\nf(\"radian // \\\" radian\");"), "int a;  \nf();");
   std::string anyRetired = "\\b(";
   for (const std::string& word : retired) anyRetired += word + "|";

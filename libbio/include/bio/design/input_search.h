@@ -54,7 +54,7 @@ class InputSearch {
   /// @param costOf  the cost with a price for limits that are not respected; calls note() unless
   ///   the search is stopped
   Eigen::VectorXd evolve(const std::function<double(const Eigen::VectorXd&)>& costOf) const;
-  /// Of the best run that was noted; empty if none undercuts the trial itself.
+  /// Values of the best run that was noted; empty if none undercuts the trial itself.
   const Eigen::VectorXd& bestInputs() const { return bestInputs_; }
 
  private:

@@ -18,7 +18,7 @@ struct SeparationQuestion {
   /// sign that the effect may have.
   double firstSize = 0, secondSize = 0;
   std::map<std::string, double> start = {};  ///< of free coordinates [rad] or [m]; else default
-  /// What is measured, with its noise: all free coordinates, and anything else.
+  /// The measured channels, with their noise: all free coordinates, and anything else.
   std::vector<ChannelCandidate> observed = {};
   double period = 0.01;  ///< between measurements [s] > 0
 };
@@ -34,7 +34,7 @@ struct SeparatingExperiment {
   Trial trial;             ///< with what is predicted of the base model as measured
   Eigen::MatrixXd base, first, second;  ///< measured times × observed, in unitOf()
   info::discover::Distinction tells;
-  /// Of DesignLimits::coordinates over all three motions, at the measured times.
+  /// Extremes of DesignLimits::coordinates over all three motions, at the measured times.
   struct Range {
     double lowest, highest, fastest;
   };

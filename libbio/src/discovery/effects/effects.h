@@ -19,7 +19,7 @@ void addHandForce(EncompassingModel& model);
 struct CoordinateUnits {
   std::string position, speed, force;  ///< "rad", "rad/s", "N m"; "m", "m/s", "N"
   std::string word;                    ///< "torque" or "force"
-  double length = 1;                   ///< 1/8 m stands for a radian
+  double length = 1;                   ///< 1/8 m stands for 1 rad
   /// The strongest isometric force of the muscles in one direction, over 64, in [N] of a shift; 1
   /// for a rotation.
   double strength = 1;

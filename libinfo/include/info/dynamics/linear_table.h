@@ -17,7 +17,7 @@ struct LinearWeights {
     if (behind == 0) return y(row);
     return (1 - behind) * y(row) + behind * y(row + 1);
   }
-  /// Of whole rows, one column per quantity.
+  /// The interpolated row, one column per quantity.
   template <class Values>
   Eigen::RowVectorXd rows(const Values& y) const {
     if (behind == 0) return y.row(row);
