@@ -5,7 +5,6 @@
 #include <numbers>
 #include <variant>
 
-#include "systems.h"
 #include "bio/analysis/replay.h"
 #include "bio/analysis/sensitivity_study.h"
 #include "bio/calibration/trial_set.h"
@@ -13,6 +12,7 @@
 #include "bio/tables/different_trials.h"
 #include "docstrings.h"
 #include "interruptible.h"
+#include "systems.h"
 
 namespace python {
 namespace {
@@ -102,10 +102,10 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
       gains = bio::furtherGains(studies.trials, *studies.system, question, found.information);
     }
   });
-  const bio::ParameterInformation& known = found.information;
+  const bio::ParameterInformation& information = found.information;
   std::vector<std::string> names, units, observed;
-  Eigen::VectorXd priorSd(std::ssize(known.parameters));
-  for (const info::Parameter& parameter : known.parameters) {
+  Eigen::VectorXd priorSd(std::ssize(information.parameters));
+  for (const info::Parameter& parameter : information.parameters) {
     priorSd[std::ssize(names)] = parameter.prior->sd;
     names.push_back(parameter.name);
     units.push_back(parameter.unit);
@@ -120,15 +120,16 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
     outputs.push_back(std::move(found.trials[i].outputs));
     gammas.push_back(std::move(found.trials[i].gamma));
   }
-  return results("names"_a = names, "units"_a = units,
-                 "values"_a = studies.catalogue().values(studies.question.selection),
-                 "prior_sd"_a = priorSd, "observed"_a = observed, "times"_a = times,
-                 "outputs"_a = outputs, "gamma"_a = gammas, "fisher"_a = known.fisher,
-                 "normalised_sensitivity"_a = known.normalisedSensitivity,
-                 "bound_alone"_a = known.boundAlone, "bound_joint"_a = known.boundJoint,
-                 "identifiable"_a = known.identifiable, "correlation"_a = known.correlation,
-                 "determined_combinations"_a = static_cast<int>(known.determinedCombinations),
-                 "sentences"_a = known.sentences, "further_channels"_a = gainsOf(gains, model));
+  return results(
+      "names"_a = names, "units"_a = units,
+      "values"_a = studies.catalogue().values(studies.question.selection), "prior_sd"_a = priorSd,
+      "observed"_a = observed, "times"_a = times, "outputs"_a = outputs, "gamma"_a = gammas,
+      "fisher"_a = information.fisher,
+      "normalised_sensitivity"_a = information.normalisedSensitivity,
+      "bound_alone"_a = information.boundAlone, "bound_joint"_a = information.boundJoint,
+      "identifiable"_a = information.identifiable, "correlation"_a = information.correlation,
+      "determined_combinations"_a = static_cast<int>(information.determinedCombinations),
+      "sentences"_a = information.sentences, "further_channels"_a = gainsOf(gains, model));
 }
 
 py::object parameterSweep(const bio::Model& model, const bio::Trial& trial,
@@ -283,12 +284,12 @@ py::object costGradient(const bio::Model& model, const std::vector<bio::Trial>& 
   options.simulation.duration = 1;
   options.threads = threads;
   std::vector<std::string> names, units;
-  Eigen::VectorXd at, atModel, known;
+  Eigen::VectorXd at, atModel, priorSds;
   bio::TrialSet::Cost cost;
   interruptible([&](const std::atomic<bool>&) {
     const bio::TrialSet set(model, choice.systemOptions(), trials, options);
-    known = set.known();
-    atModel.resize(known.size());
+    priorSds = set.priorSds();
+    atModel.resize(priorSds.size());
     for (const info::Parameter& parameter : set.parameters()) {
       atModel[std::ssize(names)] = parameter.start;
       names.push_back(parameter.name);
@@ -298,9 +299,9 @@ py::object costGradient(const bio::Model& model, const std::vector<bio::Trial>& 
     cost = set.leastSquares(at, noiseOf(set, noise));
   });
   if (priors) {
-    const Eigen::VectorXd off = (at - atModel).cwiseQuotient(known);
+    const Eigen::VectorXd off = (at - atModel).cwiseQuotient(priorSds);
     cost.value += off.squaredNorm() / 2;
-    cost.gradient += off.cwiseQuotient(known);
+    cost.gradient += off.cwiseQuotient(priorSds);
   }
   std::vector<Eigen::MatrixXd> excitations;
   for (const bio::CostGradient& trial : cost.trials) {

@@ -148,7 +148,7 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
   std::optional<bio::StepEffect> ofStep;
   std::unique_ptr<bio::MusculoskeletalSystem> system;
   interruptible([&](const std::atomic<bool>& goOn) {
-    const bio::Model model = trial.known.any()
+    const bio::Model model = trial.conditions.any()
                                  ? bio::discover::withExperimentalConditions(
                                        given, choice.systemOptions(), choice.coordinates, trial)
                                  : given;
@@ -262,10 +262,10 @@ std::string digestOf(const py::object& bytes) {
 }
 
 void mustBeOfTheModelAsItIs(const bio::Trial& trial) {
-  if (!trial.known.any()) return;
+  if (!trial.conditions.any()) return;
   throw std::invalid_argument(
       fmt::format("{}: recorded {}, which only discover and replay take into account", trial.file,
-                  bio::inWords(trial.known)));
+                  bio::inWords(trial.conditions)));
 }
 
 bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions options) {
@@ -311,10 +311,10 @@ void defineSystems(py::module_& module) {
           docstrings::Trial_prescribed)
       .def_property_readonly("channels", &channelsOf, docstrings::Trial_channels)
       .def_property_readonly(
-          "known_mass_in_hand", [](const bio::Trial& self) { return self.known.massInHand; },
+          "known_mass_in_hand", [](const bio::Trial& self) { return self.conditions.massInHand; },
           docstrings::Trial_known_mass_in_hand)
       .def_property_readonly(
-          "known_arm_turn", [](const bio::Trial& self) { return self.known.armTurn; },
+          "known_arm_turn", [](const bio::Trial& self) { return self.conditions.armTurn; },
           docstrings::Trial_known_arm_turn)
       .def_readonly("warnings", &bio::Trial::warnings, docstrings::Trial_warnings)
       .def("__repr__", [](const bio::Trial& self) {

@@ -176,7 +176,7 @@ VectorDrawing intervals(const CalibrateFindings& f) {
   std::vector<IntervalRow> rows;
   for (const bio::CalibratedParameter& parameter : f.calibration.parameters) {
     if (isKnot(parameter)) continue;
-    const auto scaled = [&](double value) { return (value - parameter.model) / parameter.known; };
+    const auto scaled = [&](double value) { return (value - parameter.model) / parameter.priorSd; };
     IntervalRow row{.name = parameter.asked.name, .estimate = scaled(parameter.value)};
     if (const auto& prior = parameter.asked.prior) {
       row.before =

@@ -103,7 +103,7 @@ Json otherMinima(const bio::Calibration& c, Summary& summary) {
       const double value = minimum.values[static_cast<Eigen::Index>(i)];
       values[parameter.asked.name] = value;
       const double sd = minimum.sd[static_cast<Eigen::Index>(i)];
-      if (std::abs(value - parameter.value) < 3 * (sd > 0 ? sd : parameter.known)) continue;
+      if (std::abs(value - parameter.value) < 3 * (sd > 0 ? sd : parameter.priorSd)) continue;
       words +=
           fmt::format("{}{} = {} instead of {}", words.empty() ? "" : ", ", parameter.asked.name,
                       numberText(value, 4), withUnit(parameter.value, parameter.asked.unit, 4));

@@ -54,7 +54,7 @@ class Replay : public Command {
     const bio::Trial trial = readTrialFile(trial_, model, simulation_,
                                            {.experimentalConditions = true, .channels = true});
     for (const std::string& warning : trial.warnings) summary.warn(warning);
-    if (trial.known.any()) {
+    if (trial.conditions.any()) {
       model = bio::discover::withExperimentalConditions(model, systemOptions(simulation_),
                                                         simulation_.coordinates, trial);
     }

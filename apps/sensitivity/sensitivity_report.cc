@@ -14,10 +14,11 @@ namespace app {
 namespace {
 
 /// Prior deviation over the joint bound: how much narrower the data make what is known.
-Eigen::VectorXd informationGain(const bio::ParameterInformation& known) {
-  Eigen::VectorXd gain(known.boundAlone.size());
+Eigen::VectorXd informationGain(const bio::ParameterInformation& information) {
+  Eigen::VectorXd gain(information.boundAlone.size());
   for (Eigen::Index i = 0; i < gain.size(); ++i) {
-    gain[i] = known.parameters[static_cast<std::size_t>(i)].prior->sd / known.boundJoint[i];
+    gain[i] =
+        information.parameters[static_cast<std::size_t>(i)].prior->sd / information.boundJoint[i];
   }
   return gain;
 }
@@ -73,7 +74,7 @@ Table sweepTable(const SensitivityFindings& f, const bio::Sweep& sweep) {
 
 /// The most influential parameters, how far each moves the motion over time.
 Figure courseFigure(const SensitivityFindings& f) {
-  const bio::ParameterInformation& known = *f.information;
+  const bio::ParameterInformation& information = *f.information;
   const double factor = shownFactor(f.coordinate);
   Figure figure{
       .title = "Parameters with the most influence on the motion",
@@ -82,11 +83,11 @@ Figure courseFigure(const SensitivityFindings& f) {
       .caption =
           "Each curve: change in the motion, to first order, per prior standard deviation of the "
           "parameter."};
-  for (const std::size_t i : ranking(known.normalisedSensitivity)) {
+  for (const std::size_t i : ranking(information.normalisedSensitivity)) {
     if (figure.series.size() == 8) break;
     const auto column = static_cast<Eigen::Index>(i);
-    const double sd = known.parameters[i].prior->sd;
-    figure.series.push_back({.name = known.parameters[i].name,
+    const double sd = information.parameters[i].prior->sd;
+    figure.series.push_back({.name = information.parameters[i].name,
                              .x = f.local->motion.time,
                              .y = scaled(f.local->q[0].col(column), factor * sd)});
   }
@@ -95,7 +96,7 @@ Figure courseFigure(const SensitivityFindings& f) {
 
 Table rankingTable(const SensitivityFindings& f, const std::string& title,
                    const Eigen::VectorXd& score, std::size_t most) {
-  const bio::ParameterInformation& known = *f.information;
+  const bio::ParameterInformation& information = *f.information;
   const std::string unit = f.shownUnit();
   Table table{.title = title,
               .columns = {"parameter", "value",
@@ -105,12 +106,12 @@ Table rankingTable(const SensitivityFindings& f, const std::string& title,
   for (const std::size_t i : ranking(score)) {
     if (table.rows.size() == most) break;
     const auto k = static_cast<Eigen::Index>(i);
-    const info::Parameter& p = known.parameters[i];
+    const info::Parameter& p = information.parameters[i];
     table.rows.push_back({p.name, withUnit(p.start, p.unit),
-                          numberText(known.normalisedSensitivity[k] * f.shownFactor(), 3),
-                          numberText(p.prior->sd, 3), numberText(known.boundAlone[k], 3),
-                          numberText(known.boundJoint[k], 3),
-                          known.identifiable[i] ? "yes" : "no"});
+                          numberText(information.normalisedSensitivity[k] * f.shownFactor(), 3),
+                          numberText(p.prior->sd, 3), numberText(information.boundAlone[k], 3),
+                          numberText(information.boundJoint[k], 3),
+                          information.identifiable[i] ? "yes" : "no"});
   }
   return table;
 }
@@ -225,22 +226,23 @@ std::string verdictOf(const SensitivityFindings& f) {
                     shownUnit(f.coordinate));
   }
   if (!f.information) return text;
-  const auto& known = *f.information;
-  const auto count = std::count(known.identifiable.begin(), known.identifiable.end(), true);
-  if (known.parameters.size() == 1) {
+  const auto& information = *f.information;
+  const auto count =
+      std::count(information.identifiable.begin(), information.identifiable.end(), true);
+  if (information.parameters.size() == 1) {
     return text +
            fmt::format("{} samples of {} determine {} to ±{} (Cramér–Rao bound).", f.samples,
-                       observationOf(f), known.parameters[0].name,
-                       withUnit(known.boundAlone[0], known.parameters[0].unit)) +
+                       observationOf(f), information.parameters[0].name,
+                       withUnit(information.boundAlone[0], information.parameters[0].unit)) +
            gainSentence(f);
   }
   text += fmt::format(
       "{} from {} samples of {} (prior standard deviation at least halved). The {} is most "
       "sensitive "
       "to {}.",
-      identifiableWords(count, static_cast<std::ptrdiff_t>(known.parameters.size())), f.samples,
-      observationOf(f), f.observed.empty() ? "motion" : "measurement",
-      known.parameters[ranking(known.normalisedSensitivity).front()].name);
+      identifiableWords(count, static_cast<std::ptrdiff_t>(information.parameters.size())),
+      f.samples, observationOf(f), f.observed.empty() ? "motion" : "measurement",
+      information.parameters[ranking(information.normalisedSensitivity).front()].name);
   return text + gainSentence(f);
 }
 
@@ -289,25 +291,25 @@ void tellSensitivity(const SensitivityFindings& f, Summary& summary) {
                           {"runs", runs}});
   }
   if (!f.information) return;
-  const bio::ParameterInformation& known = *f.information;
+  const bio::ParameterInformation& information = *f.information;
   auto parameters = nlohmann::ordered_json::array();
-  for (const std::size_t i : ranking(known.normalisedSensitivity)) {
+  for (const std::size_t i : ranking(information.normalisedSensitivity)) {
     const auto k = static_cast<Eigen::Index>(i);
-    const info::Parameter& p = known.parameters[i];
+    const info::Parameter& p = information.parameters[i];
     parameters.push_back(
         {{"name", p.name},
          {"unit", p.unit},
          {"value", p.start},
          {"prior_sd", p.prior->sd},
-         {"normalised_sensitivity", known.normalisedSensitivity[k] * f.shownFactor()},
-         {"bound_alone", orNull(known.boundAlone[k])},
-         {"bound_joint", orNull(known.boundJoint[k])},
-         {"identifiable", static_cast<bool>(known.identifiable[i])}});
+         {"normalised_sensitivity", information.normalisedSensitivity[k] * f.shownFactor()},
+         {"bound_alone", orNull(information.boundAlone[k])},
+         {"bound_joint", orNull(information.boundJoint[k])},
+         {"identifiable", static_cast<bool>(information.identifiable[i])}});
   }
   summary.set("parameters", parameters);
   std::vector<std::string> names;
-  for (const std::size_t i : ranking(informationGain(known))) {
-    if (names.size() < 20) names.push_back(known.parameters[i].name);
+  for (const std::size_t i : ranking(informationGain(information))) {
+    if (names.size() < 20) names.push_back(information.parameters[i].name);
   }
   summary.set("most_information", names);
   if (!f.observed.empty()) summary.set("observed", f.observed);
@@ -322,8 +324,8 @@ void tellSensitivity(const SensitivityFindings& f, Summary& summary) {
                        {"bound_after", gain.after}});
   }
   if (!f.gains.empty()) summary.set("further_channels", further);
-  summary.set("determined_combinations", known.determinedCombinations);
-  summary.set("not_told_apart", known.sentences);
+  summary.set("determined_combinations", information.determinedCombinations);
+  summary.set("not_told_apart", information.sentences);
   summary.set("cost_ratio", f.costRatio);
   if (f.profile) {
     summary.set("profile", {{"parameter", f.profile->parameter.name},
@@ -351,19 +353,20 @@ Report sensitivityReport(const SensitivityFindings& f) {
   } else {
     report.mainFigure = courseFigure(f);
   }
-  const bio::ParameterInformation& known = *f.information;
+  const bio::ParameterInformation& information = *f.information;
   report.details.push_back(Section{"Influence on the motion"});
-  report.details.push_back(rankingTable(f, "Sorted by influence", known.normalisedSensitivity, 25));
+  report.details.push_back(
+      rankingTable(f, "Sorted by influence", information.normalisedSensitivity, 25));
   report.details.push_back(Section{"Identifiability"});
   report.details.push_back(
       Paragraph{"Bounds are Cramér–Rao standard deviations. Alone: every other parameter is known. "
                 "Jointly: all are estimated together, each with its prior. A parameter is "
                 "identifiable if its joint bound is at most half its prior standard deviation."});
   report.details.push_back(
-      rankingTable(f, "Sorted by information gained", informationGain(known), 25));
-  if (!known.sentences.empty()) {
+      rankingTable(f, "Sorted by information gained", informationGain(information), 25));
+  if (!information.sentences.empty()) {
     report.details.push_back(Section{"Parameters that are not separately identifiable"});
-    for (const std::string& sentence : known.sentences) {
+    for (const std::string& sentence : information.sentences) {
       report.details.push_back(Paragraph{sentence + "."});
     }
   }
@@ -378,7 +381,7 @@ Report sensitivityReport(const SensitivityFindings& f) {
   report.details.push_back(
       Paragraph{fmt::format("Computing the motion with all {} sensitivities took {:.3g} times as "
                             "long as the motion alone.",
-                            known.parameters.size(), f.costRatio)});
+                            information.parameters.size(), f.costRatio)});
   return report;
 }
 

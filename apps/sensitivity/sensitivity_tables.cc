@@ -13,15 +13,15 @@ std::string cell(double value) {
 }  // namespace
 
 void writeSensitivities(const SensitivityFindings& f, std::ostream& out) {
-  const bio::ParameterInformation& known = *f.information;
+  const bio::ParameterInformation& information = *f.information;
   out << "parameter,unit,value,normalised_sensitivity,bound_alone,bound_joint,identifiable\n";
-  for (const std::size_t i : ranking(known.normalisedSensitivity)) {
+  for (const std::size_t i : ranking(information.normalisedSensitivity)) {
     const auto k = static_cast<Eigen::Index>(i);
-    const info::Parameter& p = known.parameters[i];
+    const info::Parameter& p = information.parameters[i];
     out << fmt::format("{},{},{},{},{},{},{}\n", p.name, p.unit, cell(p.start),
-                       cell(known.normalisedSensitivity[k] * f.shownFactor()),
-                       cell(known.boundAlone[k]), cell(known.boundJoint[k]),
-                       known.identifiable[i] ? "true" : "false");
+                       cell(information.normalisedSensitivity[k] * f.shownFactor()),
+                       cell(information.boundAlone[k]), cell(information.boundJoint[k]),
+                       information.identifiable[i] ? "true" : "false");
   }
 }
 

@@ -46,7 +46,7 @@ Table drivenTable(const Trial& trial, const MusculoskeletalSystem& system,
   table.name = "driven excitations";
   table.columns = {"time"};
   table.columns.insert(table.columns.end(), muscles.begin(), muscles.end());
-  table.metadata.merge(headerOf(trial.known));
+  table.metadata.merge(headerOf(trial.conditions));
   const auto n = static_cast<Eigen::Index>(muscles.size());
   const auto measured = static_cast<Eigen::Index>(courses.size());
   const auto applied = static_cast<Eigen::Index>(trial.applied.size());

@@ -125,7 +125,7 @@ std::vector<ChannelCandidate> furtherChannels(const MusculoskeletalSystem& syste
 std::vector<ChannelGain> furtherGains(const std::vector<StudiedTrial>& trials,
                                       const MusculoskeletalSystem& system,
                                       const SensitivityQuestion& question,
-                                      const ParameterInformation& known) {
+                                      const ParameterInformation& before) {
   requireTrials(trials);
   const std::vector<ChannelCandidate> candidates = furtherChannels(system, question);
   std::vector<Eigen::MatrixXd> information;
@@ -142,7 +142,7 @@ std::vector<ChannelGain> furtherGains(const std::vector<StudiedTrial>& trials,
       }
     }
   }
-  return channelGains(known, candidates, information);
+  return channelGains(before, candidates, information);
 }
 
 bool gainsTakeLong(std::size_t parameters, std::size_t channels) {

@@ -74,13 +74,13 @@ void setPriors(const TrialSet& training, const CalibrationOptions& options,
                AskedParameters& asked) {
   for (std::size_t i = 0; i < training.numCommon() && options.priors; ++i) {
     asked.parameters[i].prior =
-        info::GaussianPrior{asked.parameters[i].start, asked.known[static_cast<Index>(i)]};
+        info::GaussianPrior{asked.parameters[i].start, asked.priorSds[static_cast<Index>(i)]};
   }
   for (const auto& [name, prior] : options.prior) {
     const std::size_t i = placeOfParameter(training, name, "prior");
     info::Parameter& parameter = asked.parameters[i];
     parameter.prior = prior;
-    asked.known[static_cast<Index>(i)] = prior.sd;
+    asked.priorSds[static_cast<Index>(i)] = prior.sd;
     // a prior given by the user replaces the model's value as the start
     if (parameter.lower <= parameter.upper && std::isfinite(prior.mean)) {
       parameter.start = std::clamp(prior.mean, parameter.lower, parameter.upper);
@@ -126,7 +126,7 @@ std::size_t placeOfParameter(const TrialSet& training, const std::string& name, 
 AskedParameters askedParameters(const TrialSet& training, const TrialSet* heldOut,
                                 const CalibrationOptions& options) {
   if (heldOut) requireTransferable(training, *heldOut);
-  AskedParameters asked{training.parameters(), training.known()};
+  AskedParameters asked{training.parameters(), training.priorSds()};
   // bounds first: a prior's mean becomes the start within them
   setBounds(training, options, asked.parameters);
   setPriors(training, options, asked);

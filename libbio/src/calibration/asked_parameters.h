@@ -12,7 +12,7 @@ namespace bio {
 /// The numbers that a calibration estimates, as its options ask for them.
 struct AskedParameters {
   std::vector<info::Parameter> parameters;  ///< start, bounds, prior
-  Eigen::VectorXd known;                    ///< prior standard deviations
+  Eigen::VectorXd priorSds;                 ///< prior standard deviations
 };
 
 /// @throws std::invalid_argument what calibrate() throws of them

@@ -41,7 +41,7 @@ class Calibrator {
     requireValid(options);
     AskedParameters asked = askedParameters(training, heldOut, options);
     asked_ = std::move(asked.parameters);
-    known_ = std::move(asked.known);
+    priorSds_ = std::move(asked.priorSds);
     for (const std::string& name : options_.profile) {
       profiled_.push_back(placeOfParameter(training, name, "profile"));
     }
@@ -184,7 +184,7 @@ class Calibrator {
     setNoise(std::move(first));
     {
       const info::MultiStart found = info::estimateFromStarts(
-          problem(result_.noise.effective), known_,
+          problem(result_.noise.effective), priorSds_,
           {options_.starts, options_.seed, options_.trials.threads, 2, estimate, led});
       estimate_ = found.best;
       result_.starts = found.outcomes;
@@ -250,7 +250,7 @@ class Calibrator {
       result_.evaluations += end->evaluations;
       ends.push_back({start, end->parameters, end->cost, end->converged, info::describe(end->why)});
     }
-    OtherMinima found = otherMinima(least, ends, known_, common(), estimate_, options);
+    OtherMinima found = otherMinima(least, ends, priorSds_, common(), estimate_, options);
     result_.iterations += found.iterations;
     result_.evaluations += found.evaluations;
     estimate_ = std::move(found.best);
@@ -293,7 +293,7 @@ class Calibrator {
             : info::varianceFactor(options_.loss, white * std::sqrt(result_.noise.correlationTime));
     const MatrixXd data = at.gamma.transpose() * at.gamma / (sigma * sigma * widening);
     Judgement judgement =
-        judged({asked_, known_}, training_, estimate_.parameters, data, options_.confidence);
+        judged({asked_, priorSds_}, training_, estimate_.parameters, data, options_.confidence);
     result_.parameters = std::move(judgement.parameters);
     covariance_ = judgement.covariance;
     result_.correlation = std::move(judgement.correlation);
@@ -323,7 +323,7 @@ class Calibrator {
       }
       if (std::count(held_.begin(), held_.end(), profiled_[k]) > 0) continue;
       CalibratedParameter& parameter = result_.parameters[profiled_[k]];
-      const double width = std::isfinite(parameter.sd) ? parameter.sd : parameter.known;
+      const double width = std::isfinite(parameter.sd) ? parameter.sd : parameter.priorSd;
       try {
         parameter.profile = info::profileInterval(
             least, estimate_, static_cast<Index>(profiled_[k]), width, estimateOptions());
@@ -368,7 +368,7 @@ class Calibrator {
   const TrialSet* heldOut_;
   const CalibrationOptions& options_;
   std::vector<info::Parameter> asked_;
-  VectorXd known_;
+  VectorXd priorSds_;
   info::Predictor predictor_;
   MatrixXd measured_;
   ChannelNoise channels_;

@@ -39,7 +39,7 @@ StepChange changeOfHalving(const Model& model, const SystemOptions& system,
   VectorXd scale(slopes.cols());
   for (Index k = 0; k < scale.size(); ++k)
     scale[k] =
-        calibration.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(k)])].known;
+        calibration.parameters[static_cast<std::size_t>(free[static_cast<std::size_t>(k)])].priorSd;
   slopes *= scale.asDiagonal();
   MatrixXd information = slopes.transpose() * slopes;
   for (Index k = 0; k < scale.size(); ++k) {

@@ -28,16 +28,16 @@ VectorXd valuesOfHeldOut(const TrialSet& heldOut, const VectorXd& common, const 
   CalibrationOptions own = options;
   own.channelNoise.clear();  // of channels that these trials may not have
   ChannelNoise channels(heldOut, own);
-  std::vector<ResidualNoise> known;
+  std::vector<ResidualNoise> given;
   for (const MeasuredGroup& group : heldOut.channels()) {
     const auto& all = training.channels();
     const auto same = std::find_if(
         all.begin(), all.end(), [&](const MeasuredGroup& one) { return one.name == group.name; });
     if (same == all.end()) return values;  // its noise is not known
-    known.push_back(noises[static_cast<std::size_t>(same - all.begin())]);
+    given.push_back(noises[static_cast<std::size_t>(same - all.begin())]);
   }
-  channels.weigh(known);
-  const double sigma = known.front().effective;
+  channels.weigh(given);
+  const double sigma = given.front().effective;
   const info::OutputCovariance covariance(MatrixXd::Constant(1, 1, sigma * sigma));
   const info::LeastSquares problem(
       channels.weighted(heldOut.predictor()),

@@ -55,12 +55,12 @@ class Judge {
         all(i, i) += weight;
         if (isOfTrial(free[k])) own(i, i) += weight;  // what is known of a start was measured
       }
-      const VectorXd known = asked_.known(free);
+      const VectorXd priorSds = asked_.priorSds(free);
       const auto& channels = training_.channels();
       const bool areAngles = channels.size() == 1 && channels.front().areAngles;
-      told = info::determinacy(own, parameters, known,
+      told = info::determinacy(own, parameters, priorSds,
                                areAngles ? "the measured angles" : "the measurements");
-      const MatrixXd covariance = scaledInverse(all, known);
+      const MatrixXd covariance = scaledInverse(all, priorSds);
       sd = covariance.diagonal().cwiseSqrt();
       result.covariance(free, free) = covariance;
       result.correlation(free, free) = covariance.array() / (sd * sd.transpose()).array();
@@ -87,7 +87,7 @@ class Judge {
     CalibratedParameter one{};
     one.asked = parameter(i);
     one.model = training_.parameters()[static_cast<std::size_t>(i)].start;
-    one.known = asked_.known[i];
+    one.priorSd = asked_.priorSds[i];
     one.ofTrial = isOfTrial(i);
     one.value = estimate_[i];
     one.sd = one.lower = one.upper = unknown;

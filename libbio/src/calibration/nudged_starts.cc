@@ -68,8 +68,8 @@ std::vector<VectorXd> startsOnBothSides(const TrialSet& trials,
       if (!isPoint && std::abs(side) > aside) continue;
       VectorXd other = start;
       const auto k = static_cast<Index>(i);
-      other[k] =
-          std::clamp(start[k] + side * trials.known()[k], parameters[i].lower, parameters[i].upper);
+      other[k] = std::clamp(start[k] + side * trials.priorSds()[k], parameters[i].lower,
+                            parameters[i].upper);
       starts.push_back(std::move(other));
     }
   }

@@ -14,11 +14,12 @@ using Eigen::VectorXd;
 constexpr double worthRefining = 20;
 
 /// Within three standard deviations of an estimate, in each of the model's parameters.
-bool isNear(const VectorXd& theta, const info::Estimate& other, const VectorXd& known,
+bool isNear(const VectorXd& theta, const info::Estimate& other, const VectorXd& priorSds,
             Index common) {
   for (Index i = 0; i < common; ++i) {
     const double sd = std::sqrt(std::max(other.covariance(i, i), 0.0));
-    if (std::abs(theta[i] - other.parameters[i]) > std::max(3 * sd, 1e-3 * known[i])) return false;
+    if (std::abs(theta[i] - other.parameters[i]) > std::max(3 * sd, 1e-3 * priorSds[i]))
+      return false;
   }
   return true;
 }
@@ -50,7 +51,7 @@ bool OtherMinimum::isPossibleByData() const {
 }
 
 OtherMinima otherMinima(const info::LeastSquares& least,
-                        const std::vector<info::StartOutcome>& starts, const VectorXd& known,
+                        const std::vector<info::StartOutcome>& starts, const VectorXd& priorSds,
                         Index common, info::Estimate estimate,
                         const info::EstimateOptions& options) {
   OtherMinima result;
@@ -61,7 +62,7 @@ OtherMinima otherMinima(const info::LeastSquares& least,
   for (const info::StartOutcome& start : starts) {
     if (!start.converged || start.cost > lowest + worthRefining) continue;
     const auto isSeen = [&](const info::Estimate& end) {
-      return isNear(start.parameters, end, known, common);
+      return isNear(start.parameters, end, priorSds, common);
     };
     if (isSeen(result.best) || std::any_of(ends.begin(), ends.end(), isSeen)) continue;
     std::optional<info::Estimate> found = info::estimateIfDefined(least, start.parameters, options);
@@ -69,7 +70,7 @@ OtherMinima otherMinima(const info::LeastSquares& least,
     info::Estimate end = std::move(*found);
     result.iterations += end.iterations;
     result.evaluations += end.evaluations;
-    if (!end.converged || isNear(end.parameters, result.best, known, common)) continue;
+    if (!end.converged || isNear(end.parameters, result.best, priorSds, common)) continue;
     if (end.cost < result.best.cost) std::swap(end, result.best);
     ends.push_back(std::move(end));
   }

@@ -22,8 +22,8 @@ struct OtherMinima {
 /// @param known   prior standard deviations of all numbers
 /// @param common  so many of the first numbers are the model's, and tell minima apart
 OtherMinima otherMinima(const info::LeastSquares& least,
-                        const std::vector<info::StartOutcome>& starts, const Eigen::VectorXd& known,
-                        Eigen::Index common, info::Estimate estimate,
-                        const info::EstimateOptions& options);
+                        const std::vector<info::StartOutcome>& starts,
+                        const Eigen::VectorXd& priorSds, Eigen::Index common,
+                        info::Estimate estimate, const info::EstimateOptions& options);
 
 }  // namespace bio

@@ -171,9 +171,9 @@ void TrialSet::collectParameters(const TrialSetOptions& options) {
   }
   parameters_ = catalogue.asEstimated(selection_, false);
   collectOwn(options);
-  known_.resize(static_cast<Index>(parameters_.size()));
+  priorSds_.resize(static_cast<Index>(parameters_.size()));
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    known_[static_cast<Index>(i)] =
+    priorSds_[static_cast<Index>(i)] =
         i < selection_.size() ? catalogue.parameters()[selection_[i]].sd : parameters_[i].prior->sd;
   }
 }

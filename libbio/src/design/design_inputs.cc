@@ -282,7 +282,7 @@ Table plannedTable(const MusculoskeletalSystem& system, const Trial& trial) {
   table.metadata["predicted"] =
       fmt::format("{} {} predicted, not measured", fmt::join(predicted, ", "),
                   predicted.size() == 1 ? "is" : "are");
-  table.metadata.merge(headerOf(trial.known));
+  table.metadata.merge(headerOf(trial.conditions));
   return table;
 }
 

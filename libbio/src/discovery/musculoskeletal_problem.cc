@@ -130,7 +130,7 @@ void MusculoskeletalProblem::addTrial(Trial trial) {
   collectSamples(one);
   one.recorded = recordedTrial(one.trial, encompassing_.system(), options_.simulation);
   one.recorded.simulation.progress = {};
-  one.known = experimentalConditionsOf(one.trial, encompassing_);
+  one.conditions = experimentalConditionsOf(one.trial, encompassing_);
   addNodes(one);
   addStarts(one);
   trials_.push_back(std::move(one));
@@ -241,7 +241,7 @@ void MusculoskeletalProblem::separateWhatTrialsTellApart() {
   if (isPushed) encompassing_.separate("delay", "clock");
   // gravity's moment grows with a mass, that of a force on the hand does not
   const bool isLoaded = std::any_of(trials_.begin(), trials_.end(), [&](const OfTrial& trial) {
-    return trial.trial.known.massInHand != trials_.front().trial.known.massInHand;
+    return trial.trial.conditions.massInHand != trials_.front().trial.conditions.massInHand;
   });
   if (isLoaded) encompassing_.separate("tilt", "handforce");
 }

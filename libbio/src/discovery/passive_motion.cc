@@ -84,12 +84,12 @@ std::string sentenceOf(const Trial& moved, const EncompassingModel& model, doubl
   const bool turns = coordinate.isRotation;
   const double unit = turns ? std::numbers::pi / 180 : 1;
   std::string changed, header;
-  if (moved.known.massInHand != 0)
-    changed = fmt::format(", with {} kg {}", moved.known.massInHand, placeOfMass(model));
-  if (moved.known.armTurn != 0)
-    changed += ", " + inWords({0, moved.known.armTurn}) +
+  if (moved.conditions.massInHand != 0)
+    changed = fmt::format(", with {} kg {}", moved.conditions.massInHand, placeOfMass(model));
+  if (moved.conditions.armTurn != 0)
+    changed += ", " + inWords({0, moved.conditions.armTurn}) +
                " (as a whole, about the joint, positive as the coordinate rises)";
-  for (const auto& [line, value] : headerOf(moved.known))
+  for (const auto& [line, value] : headerOf(moved.conditions))
     header += fmt::format("{}{}={}", header.empty() ? ", header " : " and ", line, value);
   return fmt::format(
       "relax the muscles, have the limb moved slowly from {:.4g} to {:.4g} {} and back within "
@@ -117,8 +117,8 @@ std::vector<PlannedExperiment> passiveMotions(const Trial& trial, const Encompas
       const double low = coordinate.rangeMin + 0.1 * span,
                    high = coordinate.rangeMin + (turn == 0 ? 0.65 : 0.85) * span;
       Trial changed = trial;
-      changed.known.massInHand += mass;
-      changed.known.armTurn += turn * std::numbers::pi / 180;
+      changed.conditions.massInHand += mass;
+      changed.conditions.armTurn += turn * std::numbers::pi / 180;
       if (auto moved = movedPassively(std::move(changed), model, low, high))
         planned.push_back({sentenceOf(*moved, model, low, high), std::move(*moved)});
     }

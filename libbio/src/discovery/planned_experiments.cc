@@ -48,12 +48,12 @@ std::vector<PlannedExperiment> plannedExperiments(const Trial& trial,
   for (const double mass : {0.1, 0.3, 1.0}) {
     if (model.movedBodies().empty()) break;
     Trial loaded = trial;
-    loaded.known.massInHand += mass;
-    planned.push_back(
-        {fmt::format("repeat {} with a known mass of {} kg {} (header line "
-                     "known_mass_in_hand_kg={})",
-                     file, loaded.known.massInHand, placeOfMass(model), loaded.known.massInHand),
-         loaded});
+    loaded.conditions.massInHand += mass;
+    planned.push_back({fmt::format("repeat {} with a known mass of {} kg {} (header line "
+                                   "known_mass_in_hand_kg={})",
+                                   file, loaded.conditions.massInHand, placeOfMass(model),
+                                   loaded.conditions.massInHand),
+                       loaded});
   }
   for (const MovingCoordinate& at : model.coordinates()) {
     const Coordinate& coordinate = at.coordinate;

@@ -27,7 +27,7 @@ struct MusculoskeletalProblem::Columns {
 MusculoskeletalProblem::Columns MusculoskeletalProblem::columnsOf(
     const OfTrial& trial, const VectorXd& values, const std::vector<std::size_t>& wanted) const {
   const std::size_t own = encompassing_.quantities().size();
-  const VectorXd modelValues = values.head(static_cast<Index>(own)) + trial.known;
+  const VectorXd modelValues = values.head(static_cast<Index>(own)) + trial.conditions;
   Columns columns;
   for (const std::size_t quantity : wanted) {
     ParameterDirection direction;

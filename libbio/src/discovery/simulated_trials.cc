@@ -72,7 +72,7 @@ ParameterCatalogue::Setting MusculoskeletalProblem::settingAt(
   }
   const auto own = static_cast<Index>(encompassing_.quantities().size());
   ParameterCatalogue::Setting setting =
-      encompassing_.settingAt(values.head(own) + trial.known, wanted);
+      encompassing_.settingAt(values.head(own) + trial.conditions, wanted);
   for (const Start& start : trial.starts) {
     const int c = encompassing_.coordinates()[start.coordinate].index;
     SensorLaw sensor;

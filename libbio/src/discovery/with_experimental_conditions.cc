@@ -15,24 +15,25 @@ Eigen::VectorXd experimentalConditionsOf(const Trial& trial,
                                          const EncompassingModel& encompassing) {
   const auto& quantities = encompassing.quantities();
   Eigen::VectorXd changes = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(quantities.size()));
-  if (!trial.known.any()) return changes;
+  if (!trial.conditions.any()) return changes;
   const auto change = [&](const std::string& name, double value, const char* why) {
     if (value == 0) return;
     const auto at = std::find_if(quantities.begin(), quantities.end(),
                                  [&](const auto& quantity) { return quantity.name == name; });
     if (at == quantities.end()) {
       throw std::invalid_argument(
-          fmt::format("{}: recorded {}, but {}", trial.file, inWords(trial.known), why));
+          fmt::format("{}: recorded {}, but {}", trial.file, inWords(trial.conditions), why));
     }
     changes[at - quantities.begin()] = value;
   };
-  change("known.mass", trial.known.massInHand, "the model moves no body that could carry it");
-  change("known.turn", trial.known.armTurn, "the coordinate does not turn bodies across gravity");
-  if (trial.known.armTurn != 0 && encompassing.present().count("handforce") > 0) {
+  change("known.mass", trial.conditions.massInHand, "the model moves no body that could carry it");
+  change("known.turn", trial.conditions.armTurn,
+         "the coordinate does not turn bodies across gravity");
+  if (trial.conditions.armTurn != 0 && encompassing.present().count("handforce") > 0) {
     throw std::invalid_argument(
         fmt::format("{}: recorded {}, but the model has a force on {} ({}), which would turn with "
                     "the limb",
-                    trial.file, inWords(trial.known), endOfLimb(encompassing),
+                    trial.file, inWords(trial.conditions), endOfLimb(encompassing),
                     encompassing.present().at("handforce")));
   }
   return changes;
@@ -40,7 +41,7 @@ Eigen::VectorXd experimentalConditionsOf(const Trial& trial,
 
 Model withExperimentalConditions(const Model& model, const SystemOptions& system,
                                  const CoordinateNames& coordinates, const Trial& trial) {
-  if (!trial.known.any()) return model;
+  if (!trial.conditions.any()) return model;
   EncompassingModel encompassing(model, system, coordinates);
   addExperimentalConditions(encompassing);
   addHandForce(encompassing);  // which the model may have already

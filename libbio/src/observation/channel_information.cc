@@ -87,11 +87,11 @@ std::vector<Eigen::MatrixXd> informationOf(const MusculoskeletalSystem& system,
   return information;
 }
 
-std::vector<ChannelGain> channelGains(const ParameterInformation& known,
+std::vector<ChannelGain> channelGains(const ParameterInformation& before,
                                       const std::vector<ChannelCandidate>& candidates,
                                       const std::vector<Eigen::MatrixXd>& information) {
-  const auto p = static_cast<Eigen::Index>(known.parameters.size());
-  bool fits = candidates.size() == information.size() && known.fisher.rows() == p;
+  const auto p = static_cast<Eigen::Index>(before.parameters.size());
+  bool fits = candidates.size() == information.size() && before.fisher.rows() == p;
   for (const Eigen::MatrixXd& one : information) fits = fits && one.rows() == p && one.cols() == p;
   if (!fits) {
     throw std::invalid_argument(
@@ -99,7 +99,7 @@ std::vector<ChannelGain> channelGains(const ParameterInformation& known,
   }
   Eigen::VectorXd sd(p);
   for (Eigen::Index i = 0; i < p; ++i) {
-    sd[i] = known.parameters[static_cast<std::size_t>(i)].prior->sd;
+    sd[i] = before.parameters[static_cast<std::size_t>(i)].prior->sd;
   }
   // in units of prior deviations: I + Λ becomes S I S + 1
   const auto scaled = [&](const Eigen::MatrixXd& one) -> Eigen::LLT<Eigen::MatrixXd> {
@@ -113,16 +113,16 @@ std::vector<ChannelGain> channelGains(const ParameterInformation& known,
   const auto bounds = [&](const Eigen::LLT<Eigen::MatrixXd>& A) -> Eigen::ArrayXd {
     return A.solve(Eigen::MatrixXd::Identity(p, p)).diagonal().array().sqrt();
   };
-  const Eigen::LLT<Eigen::MatrixXd> now = scaled(known.fisher);
+  const Eigen::LLT<Eigen::MatrixXd> now = scaled(before.fisher);
   const Eigen::ArrayXd boundsNow = bounds(now);
   std::vector<ChannelGain> gains;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    const Eigen::LLT<Eigen::MatrixXd> then = scaled(known.fisher + information[c]);
+    const Eigen::LLT<Eigen::MatrixXd> then = scaled(before.fisher + information[c]);
     const Eigen::ArrayXd boundsThen = bounds(then);
     Eigen::Index best = 0;
     (boundsThen / boundsNow).minCoeff(&best);
     gains.push_back({candidates[c], (logDeterminant(then) - logDeterminant(now)) / 2,
-                     known.parameters[static_cast<std::size_t>(best)].name,
+                     before.parameters[static_cast<std::size_t>(best)].name,
                      boundsNow[best] * sd[best], boundsThen[best] * sd[best]});
   }
   std::stable_sort(gains.begin(), gains.end(), [](const ChannelGain& a, const ChannelGain& b) {

@@ -40,14 +40,14 @@ std::string combination(const info::Parameter& a, const info::Parameter& b, doub
 }
 
 /// Pairs that look alike, those that matter most first.
-void addPairs(const ParameterInformation& known, std::vector<std::string>& sentences) {
+void addPairs(const ParameterInformation& information, std::vector<std::string>& sentences) {
   constexpr std::size_t most = 12;
-  auto pairs = alikePairs(known.fisher, 0.99);
+  auto pairs = alikePairs(information.fisher, 0.99);
   const auto weight = [&](const AlikePair& pair) {
-    return std::min(known.normalisedSensitivity[pair.first],
-                    known.normalisedSensitivity[pair.second]);
+    return std::min(information.normalisedSensitivity[pair.first],
+                    information.normalisedSensitivity[pair.second]);
   };
-  const double small = 1e-6 * known.normalisedSensitivity.maxCoeff();
+  const double small = 1e-6 * information.normalisedSensitivity.maxCoeff();
   std::erase_if(pairs, [&](const AlikePair& pair) { return weight(pair) < small; });
   std::stable_sort(pairs.begin(), pairs.end(),
                    [&](const AlikePair& a, const AlikePair& b) { return weight(a) > weight(b); });
@@ -57,23 +57,23 @@ void addPairs(const ParameterInformation& known, std::vector<std::string>& sente
                                       pairs.size() - most));
       break;
     }
-    const info::Parameter& a = known.parameters[static_cast<std::size_t>(pairs[i].first)];
-    const info::Parameter& b = known.parameters[static_cast<std::size_t>(pairs[i].second)];
-    const double seenA = std::sqrt(known.fisher(pairs[i].first, pairs[i].first));
-    const double seenB = std::copysign(std::sqrt(known.fisher(pairs[i].second, pairs[i].second)),
-                                       -pairs[i].correlation);
+    const info::Parameter& a = information.parameters[static_cast<std::size_t>(pairs[i].first)];
+    const info::Parameter& b = information.parameters[static_cast<std::size_t>(pairs[i].second)];
+    const double seenA = std::sqrt(information.fisher(pairs[i].first, pairs[i].first));
+    const double seenB = std::copysign(
+        std::sqrt(information.fisher(pairs[i].second, pairs[i].second)), -pairs[i].correlation);
     sentences.push_back(fmt::format(
         "{} and {} are nearly indistinguishable: only {} is determined (correlation {:.5f})",
         a.name, b.name, combination(a, b, seenA, seenB), pairs[i].correlation));
   }
 }
 
-void addStill(const ParameterInformation& known, std::vector<std::string>& sentences) {
+void addStill(const ParameterInformation& information, std::vector<std::string>& sentences) {
   std::string names;
   int count = 0;
-  for (Index i = 0; i < known.fisher.rows(); ++i) {
-    const info::Parameter& p = known.parameters[static_cast<std::size_t>(i)];
-    if (known.fisher(i, i) * p.prior->sd * p.prior->sd > nothing) continue;
+  for (Index i = 0; i < information.fisher.rows(); ++i) {
+    const info::Parameter& p = information.parameters[static_cast<std::size_t>(i)];
+    if (information.fisher(i, i) * p.prior->sd * p.prior->sd > nothing) continue;
     if (++count <= 8) names += (names.empty() ? "" : ", ") + p.name;
   }
   if (count > 8) names += fmt::format(" and {} more", count - 8);
@@ -112,9 +112,9 @@ ParameterInformation informationAbout(const ParameterCatalogue& catalogue,
   const auto p = static_cast<Index>(selection.size());
   if (p == 0 || gammas.empty())
     throw std::invalid_argument("must have at least one parameter and one trial");
-  ParameterInformation known;
-  known.parameters = catalogue.asEstimated(selection, true);
-  known.fisher.setZero(p, p);
+  ParameterInformation information;
+  information.parameters = catalogue.asEstimated(selection, true);
+  information.fisher.setZero(p, p);
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(p);
   Index samples = 0;
   const info::OutputCovariance covariance(Eigen::MatrixXd::Constant(1, 1, noise * noise));
@@ -123,39 +123,39 @@ ParameterInformation informationAbout(const ParameterCatalogue& catalogue,
       throw std::invalid_argument(
           fmt::format("sensitivities to {} parameters, must be {}", gamma.cols(), p));
     }
-    known.fisher += info::fisherInformation(gamma, covariance);
+    information.fisher += info::fisherInformation(gamma, covariance);
     squares += gamma.colwise().squaredNorm().transpose();
     samples += gamma.rows();
   }
   Eigen::VectorXd sd(p);
   for (Index i = 0; i < p; ++i) {
-    sd[i] = known.parameters[static_cast<std::size_t>(i)].prior->sd;
+    sd[i] = information.parameters[static_cast<std::size_t>(i)].prior->sd;
   }
-  known.normalisedSensitivity =
+  information.normalisedSensitivity =
       (squares / static_cast<double>(samples)).cwiseSqrt().cwiseProduct(sd);
-  known.boundAlone = known.fisher.diagonal().cwiseSqrt().cwiseInverse();
+  information.boundAlone = information.fisher.diagonal().cwiseSqrt().cwiseInverse();
 
   // in units of the priors' deviations: S(I + Λ)S = SIS + 1, well conditioned from below
-  const Eigen::MatrixXd scaled = sd.asDiagonal() * known.fisher * sd.asDiagonal();
+  const Eigen::MatrixXd scaled = sd.asDiagonal() * information.fisher * sd.asDiagonal();
   const Eigen::LLT<Eigen::MatrixXd> factor(scaled + Eigen::MatrixXd::Identity(p, p));
   const Eigen::MatrixXd covarianceScaled = factor.solve(Eigen::MatrixXd::Identity(p, p));
   const Eigen::VectorXd ratio = covarianceScaled.diagonal().cwiseSqrt();
-  known.boundJoint = ratio.cwiseProduct(sd);
-  known.correlation =
+  information.boundJoint = ratio.cwiseProduct(sd);
+  information.correlation =
       ratio.cwiseInverse().asDiagonal() * covarianceScaled * ratio.cwiseInverse().asDiagonal();
-  for (Index i = 0; i < p; ++i) known.identifiable.push_back(ratio[i] <= 0.5);
+  for (Index i = 0; i < p; ++i) information.identifiable.push_back(ratio[i] <= 0.5);
   // combinations about which the data at least halve what was uncertain: 1/(1 + λ) ≤ 1/4
   const Eigen::VectorXd eigenvalues = info::symmetricEigenvalues(scaled);
-  known.determinedCombinations = (eigenvalues.array() >= 3).count();
-  if (known.determinedCombinations < p) {
-    known.sentences.push_back(
+  information.determinedCombinations = (eigenvalues.array() >= 3).count();
+  if (information.determinedCombinations < p) {
+    information.sentences.push_back(
         fmt::format("the data at least halve the uncertainty of {} combinations of the {} "
                     "parameters; the other combinations rest mainly on their priors",
-                    known.determinedCombinations, p));
+                    information.determinedCombinations, p));
   }
-  addPairs(known, known.sentences);
-  addStill(known, known.sentences);
-  return known;
+  addPairs(information, information.sentences);
+  addStill(information, information.sentences);
+  return information;
 }
 
 }  // namespace bio

@@ -80,14 +80,14 @@ class Collector {
     std::visit(
         [&]<class Parameters>(const Parameters& p) {
           for (std::size_t i = 0; i < Parameters::count; ++i) {
-            const HillPrior known = hillPrior(p, i);
-            if (!known.counts) continue;
+            const HillPrior prior = hillPrior(p, i);
+            if (!prior.counts) continue;
             const auto& property = Parameters::properties[i];
             const bool isPennation = i == muscles::common::pennation;
             list_.add(
                 fmt::format("{}.{}", muscle.name, isPennation ? "pennation_angle" : property.name),
                 property.unit.data(), fmt::format("of a {}", muscle.className), p.at(p, i),
-                {known.lower, known.upper, known.sd}, {MuscleNumberTarget{index, i}});
+                {prior.lower, prior.upper, prior.sd}, {MuscleNumberTarget{index, i}});
           }
         },
         *muscle.hill);

@@ -27,8 +27,8 @@ float squareApart(const ChainEnds& a, const ChainEnds& b, std::size_t numbers) {
 
 // P moves, Q moves, or a member shifts or turns about the origin of the first, along axis k of the
 // first member's frame.
-ChainScrews unitMotion(const ChainStarts::Known& known, std::size_t i) {
-  const Placement<double>& X = known.X_GC[0];
+ChainScrews unitMotion(const ChainStarts::Known& posture, std::size_t i) {
+  const Placement<double>& X = posture.X_GC[0];
   const Vector3d axis = X.R.col(static_cast<Eigen::Index>(i % 3));
   ChainScrews motion;
   if (i < 3) {
@@ -72,8 +72,8 @@ ChainEnds chainEnds(std::size_t count, const ChainPlacements& X_GC, const Vector
 ChainStarts::ChainStarts(std::size_t count, bool inOneSegment, const std::vector<Known>& postures)
     : count_(count), numMotions_(inOneSegment ? 6 : 6 * count) {
   std::vector<ChainEnds> ends;
-  for (const Known& known : postures) {
-    ends.push_back(chainEnds(count, known.X_GC, known.P, known.Q));
+  for (const Known& posture : postures) {
+    ends.push_back(chainEnds(count, posture.X_GC, posture.P, posture.Q));
   }
   std::vector<std::size_t> order(postures.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -116,18 +116,18 @@ void ChainStarts::arrange(std::vector<std::size_t>& order, std::size_t first, st
 }
 
 // How the contacts of a posture follow small motions; 0 where they cannot be followed.
-void ChainStarts::addChanges(const Known& known) {
+void ChainStarts::addChanges(const Known& posture) {
   const std::size_t begin = changes_.size();
   changes_.resize(begin + numMotions_ * count_ * perContact);
-  if (known.taut.numContacts == 0 || !known.taut.isShortest) return;
-  const ChainChanges changes(known.taut);
+  if (posture.taut.numContacts == 0 || !posture.taut.isShortest) return;
+  const ChainChanges changes(posture.taut);
   for (std::size_t i = 0; i < numMotions_; ++i) {
-    const auto shifts = changes.shifts(unitMotion(known, i));
-    for (std::size_t c = 0; c < static_cast<std::size_t>(known.taut.numContacts); ++c) {
-      const ChainContact& contact = known.taut.contacts[c];
+    const auto shifts = changes.shifts(unitMotion(posture, i));
+    for (std::size_t c = 0; c < static_cast<std::size_t>(posture.taut.numContacts); ++c) {
+      const ChainContact& contact = posture.taut.contacts[c];
       const auto object = static_cast<std::size_t>(contact.object);
       const ContactShift& shift = shifts[c];
-      const Eigen::Matrix3d R_SG = known.X_GC[object].R.transpose();
+      const Eigen::Matrix3d R_SG = posture.X_GC[object].R.transpose();
       const Vector3d dx = R_SG * (shift.alongA * contact.atA.u + shift.aside * contact.atA.b);
       const Vector3d du = R_SG * (shift.turn * contact.atA.b);
       const double arc = shift.alongB - shift.alongA;

@@ -35,20 +35,21 @@ double numberOf(const std::map<std::string, std::string>& header, const char* na
 
 }  // namespace
 
-std::string inWords(const ExperimentalConditions& known) {
+std::string inWords(const ExperimentalConditions& conditions) {
   std::string words;
-  if (known.massInHand != 0) words = fmt::format("with a known mass of {} kg", known.massInHand);
-  if (known.armTurn != 0) {
+  if (conditions.massInHand != 0)
+    words = fmt::format("with a known mass of {} kg", conditions.massInHand);
+  if (conditions.armTurn != 0) {
     words += fmt::format("{} the limb turned by {} deg", words.empty() ? "with" : " and",
-                         inDegrees(known.armTurn));
+                         inDegrees(conditions.armTurn));
   }
   return words;
 }
 
-std::map<std::string, std::string> headerOf(const ExperimentalConditions& known) {
+std::map<std::string, std::string> headerOf(const ExperimentalConditions& conditions) {
   std::map<std::string, std::string> header;
-  if (known.massInHand != 0) header[massLine] = fmt::format("{}", known.massInHand);
-  if (known.armTurn != 0) header[turnLine] = inDegrees(known.armTurn);
+  if (conditions.massInHand != 0) header[massLine] = fmt::format("{}", conditions.massInHand);
+  if (conditions.armTurn != 0) header[turnLine] = inDegrees(conditions.armTurn);
   return header;
 }
 

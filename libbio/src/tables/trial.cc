@@ -105,13 +105,13 @@ class TrialReader {
 
   void readExperimentalConditions() {
     try {
-      trial_.known = experimentalConditionsIn(table_.metadata);
+      trial_.conditions = experimentalConditionsIn(table_.metadata);
     } catch (const std::invalid_argument& error) {
       fail(error.what());
     }
-    if (trial_.known.any() && !options_.experimentalConditions) {
+    if (trial_.conditions.any() && !options_.experimentalConditions) {
       fail(fmt::format("recorded {} (header), which only 'discover' and 'replay' take into account",
-                       inWords(trial_.known)));
+                       inWords(trial_.conditions)));
     }
   }
 

@@ -82,7 +82,7 @@ class Work {
 
   LocaliseOptions mapOptions() const { return {0.25, 8, 6, options_.falseDiscoveries}; }
 
-  void prepare(const SearchMemory* known) {
+  void prepare(const SearchMemory* memory) {
     AdequacyOptions& test = test_;
     test.level = options_.level;
     test.evidence = options_.remainder;
@@ -98,8 +98,8 @@ class Work {
     search_.emplace(data_, trials_, options_, verdict_.sds, [this](const std::string& doing) {
       report(stage_, fraction_ + 0.5 * (0.9 - fraction_) * 0.05, doing);
     });
-    if (known != nullptr)
-      search_->adopt(*known);
+    if (memory != nullptr)
+      search_->adopt(*memory);
     else
       search_->calibrate();
     base();
@@ -262,9 +262,9 @@ class Work {
     for (const NamedEffect& named : verdict_.effects)
       for (const std::size_t rival : named.equals) {
         if (rival == named.candidate) continue;
-        const auto known = search_->entries().find(with(without(chosen_, named.candidate), rival));
-        if (known != search_->entries().end() && known->second.works())
-          verdict_.rivals.push_back(known->second.fit);
+        const auto entry = search_->entries().find(with(without(chosen_, named.candidate), rival));
+        if (entry != search_->entries().end() && entry->second.works())
+          verdict_.rivals.push_back(entry->second.fit);
       }
     if (!verdict_.rivals.empty())
       verdict_.rivals.insert(verdict_.rivals.begin(), search_->at(chosen_).fit);

@@ -24,11 +24,11 @@ std::string quantity(double value, const Parameter& parameter) {
 /// "BRA.gain +0.2, BRD.gain −0.19": the direction, so long that parameter i moves by its known
 /// deviation; parameter i first.
 std::string moves(const VectorXd& v, Index i, const std::vector<Parameter>& parameters,
-                  const VectorXd& known) {
+                  const VectorXd& priorSds) {
   const double least = 0.25 * v.cwiseAbs().maxCoeff();
   std::string text;
   const auto add = [&](Index k) {
-    const double by = v[k] / v[i] * known[k];
+    const double by = v[k] / v[i] * priorSds[k];
     const Parameter& parameter = parameters[static_cast<std::size_t>(k)];
     text += fmt::format("{}{} by {}{}", text.empty() ? "" : ", ", parameter.name,
                         by < 0 ? "−" : "+", quantity(std::abs(by), parameter));
@@ -60,25 +60,25 @@ std::string partners(const VectorXd& v, Index i, const std::vector<Parameter>& p
 
 std::vector<Determinacy> determinacy(const MatrixXd& information,
                                      const std::vector<Parameter>& parameters,
-                                     const VectorXd& known, const std::string& outcome) {
+                                     const VectorXd& priorSds, const std::string& outcome) {
   const auto p = static_cast<Index>(parameters.size());
-  if (p == 0 || information.rows() != p || information.cols() != p || known.size() != p) {
+  if (p == 0 || information.rows() != p || information.cols() != p || priorSds.size() != p) {
     throw std::invalid_argument(fmt::format(
         "determinacy: information is {} × {} with {} prior standard deviations, for {} parameters",
-        information.rows(), information.cols(), known.size(), p));
+        information.rows(), information.cols(), priorSds.size(), p));
   }
   for (Index i = 0; i < p; ++i) {
-    if (!(known[i] > 0 && std::isfinite(known[i]))) {
+    if (!(priorSds[i] > 0 && std::isfinite(priorSds[i]))) {
       throw std::invalid_argument(
           fmt::format("parameter {}: prior standard deviation {} must be > 0 and finite",
-                      label(parameters[static_cast<std::size_t>(i)]), known[i]));
+                      label(parameters[static_cast<std::size_t>(i)]), priorSds[i]));
     }
   }
   if (!information.allFinite()) {
     throw std::domain_error("determinacy: every entry of the information must be finite");
   }
 
-  const auto eigen = symmetricEigen(known.asDiagonal() * information * known.asDiagonal());
+  const auto eigen = symmetricEigen(priorSds.asDiagonal() * information * priorSds.asDiagonal());
   const MatrixXd& v = eigen.vectors;
   // eigenvalues below rounding carry no information
   const double floor = 1e-14 * std::max(0.0, eigen.values[p - 1]);
@@ -97,10 +97,10 @@ std::vector<Determinacy> determinacy(const MatrixXd& information,
         loosest = j;
       }
     }
-    Determinacy determinacy{1 / std::sqrt(information(i, i)), std::sqrt(variance) * known[i], false,
-                            ""};
+    Determinacy determinacy{1 / std::sqrt(information(i, i)), std::sqrt(variance) * priorSds[i],
+                            false, ""};
     if (!(information(i, i) > 0)) determinacy.boundAlone = determinacy.bound = infinity;
-    const double enough = known[i] / std::sqrt(3.0);
+    const double enough = priorSds[i] / std::sqrt(3.0);
     determinacy.identifiable = determinacy.bound <= enough;
     const std::string others = partners(v.col(loosest), i, parameters);
     if (determinacy.identifiable) {
@@ -112,13 +112,13 @@ std::vector<Determinacy> determinacy(const MatrixXd& information,
           "{} has too little effect on {}: even with all other parameters known, the data alone "
           "would determine it to ±{} only, and its prior is ±{}",
           parameter.name, outcome, quantity(determinacy.boundAlone, parameter),
-          quantity(known[i], parameter));
+          quantity(priorSds[i], parameter));
     } else {
       const double lambda = std::max(0.0, eigen.values[loosest]);
       determinacy.why = fmt::format(
           "{} is confounded with {}: {} together change {} by {:.2g} standard deviations in all; "
           "with the others known it would be determined to ±{}",
-          parameter.name, others, moves(v.col(loosest), i, parameters, known), outcome,
+          parameter.name, others, moves(v.col(loosest), i, parameters, priorSds), outcome,
           std::sqrt(lambda) / std::abs(v(i, loosest)), quantity(determinacy.boundAlone, parameter));
     }
     result.push_back(std::move(determinacy));

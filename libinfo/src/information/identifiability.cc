@@ -134,11 +134,11 @@ std::string moves(const VectorXd& scaled, const VectorXd& s,
 // Cramér–Rao standard deviations and correlations within the determined subspace.
 void setAccuracy(IdentifiabilityReport& report, const VectorXd& s) {
   const Index p = s.size();
-  const MatrixXd known = report.eigenvectors.rightCols(report.rank);
+  const MatrixXd priorSds = report.eigenvectors.rightCols(report.rank);
   const MatrixXd covariance =
       s.asDiagonal() *
-      (known * report.eigenvalues.tail(report.rank).cwiseInverse().asDiagonal() *
-       known.transpose()) *
+      (priorSds * report.eigenvalues.tail(report.rank).cwiseInverse().asDiagonal() *
+       priorSds.transpose()) *
       s.asDiagonal();
   report.sd = covariance.diagonal().cwiseSqrt();
   report.correlation.resize(p, p);

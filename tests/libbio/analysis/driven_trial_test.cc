@@ -17,14 +17,14 @@ TEST(DrivenTrial, KeepsTheTorqueFromOutsideAndWhatIsKnown) {
   bio::Trial trial = bio::readTrial(root + "/emg_data/curl_slow.sto", model);
   const VectorXd torque = (3 * trial.times).array().sin();
   trial.applied = {{"elbow_flexion", torque}};
-  trial.known = {1.25, -0.5};
+  trial.conditions = {1.25, -0.5};
   bio::EmgMapping mapping;
   mapping.delay = 0.013;
   const bio::Table table = bio::drivenTable(trial, system, mapping);
   const bio::Trial driven =
       bio::trialFrom(table, "driven", model, {.experimentalConditions = true});
-  EXPECT_EQ(driven.known.massInHand, 1.25);
-  EXPECT_NEAR(driven.known.armTurn, -0.5, 1e-12);
+  EXPECT_EQ(driven.conditions.massInHand, 1.25);
+  EXPECT_NEAR(driven.conditions.armTurn, -0.5, 1e-12);
   ASSERT_EQ(driven.applied.size(), 1U);
   ASSERT_EQ(driven.measured.size(), 1U);
   EXPECT_GT(driven.times.size(), trial.times.size());  // excitations bend between the rows now

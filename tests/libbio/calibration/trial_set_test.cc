@@ -45,7 +45,7 @@ TEST(TrialSet, SensitivitiesAreDerivativesOfTheOutputs) {
   const info::Prediction at = predictor.withSensitivities(theta);
   EXPECT_EQ(at.outputs, predictor.outputs(theta));
   for (Eigen::Index i = 0; i < 7; ++i) {
-    const double h = 1e-4 * trials.known()[i];
+    const double h = 1e-4 * trials.priorSds()[i];
     Eigen::VectorXd up = theta, down = theta;
     up[i] += h;
     down[i] -= h;

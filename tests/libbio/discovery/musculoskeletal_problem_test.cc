@@ -296,7 +296,7 @@ TEST(MusculoskeletalProblem, AKnownMassIsInTheHandBesidesWhatIsMissing) {
   const ShippedElbow elbow;
   const Trial empty = cut(elbow.trial, 0.5);
   Trial loaded = empty;
-  loaded.known.massInHand = 0.7;
+  loaded.conditions.massInHand = 0.7;
   const auto make = [&](std::vector<Trial> trials) {
     return MusculoskeletalProblem(elbow.model, ShippedElbow::options(), "elbow_flexion",
                                   std::move(trials));
@@ -334,7 +334,7 @@ TEST(MusculoskeletalProblem, AnArmThatIsKnownToBeTurned) {
   const ShippedElbow elbow;
   const Trial upright = cut(elbow.trial, 0.5);
   Trial turned = upright;
-  turned.known.armTurn = -0.4;
+  turned.conditions.armTurn = -0.4;
   const MusculoskeletalProblem data(elbow.model, ShippedElbow::options(), "elbow_flexion",
                                     {upright, turned}, Case::exact());
   const auto index = [&](const char* name) {

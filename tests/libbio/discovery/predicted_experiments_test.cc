@@ -26,19 +26,19 @@ using fixtures::ShippedElbow;
 TEST(PlannedExperiments, RepeatATrialWithWhatTheExperimenterKnows) {
   const ShippedElbow elbow;
   Trial trial = elbow.trial;
-  trial.known.massInHand = 0.5;
+  trial.conditions.massInHand = 0.5;
   const EncompassingModel model(elbow.model, ShippedElbow::options(), "elbow_flexion");
   const auto planned = plannedExperiments(trial, model);
   ASSERT_GE(planned.size(), 4U);
-  EXPECT_EQ(planned.front().trial.known.massInHand, 0.5);
+  EXPECT_EQ(planned.front().trial.conditions.massInHand, 0.5);
   EXPECT_TRUE(planned.front().trial.applied.empty());
   std::set<std::string> sentences;
   int pushed = 0, loaded = 0;
   for (const PlannedExperiment& experiment : planned) {
     EXPECT_TRUE(sentences.insert(experiment.sentence).second) << experiment.sentence;
     EXPECT_EQ(experiment.trial.excitations, trial.excitations);
-    EXPECT_GE(experiment.trial.known.massInHand, 0.5);  // what is there already stays
-    loaded += experiment.trial.known.massInHand > 0.5;
+    EXPECT_GE(experiment.trial.conditions.massInHand, 0.5);  // what is there already stays
+    loaded += experiment.trial.conditions.massInHand > 0.5;
     for (const AppliedForce& push : experiment.trial.applied) {
       ++pushed;
       EXPECT_EQ(push.coordinate, "elbow_flexion");
@@ -80,7 +80,7 @@ TEST(PlannedExperiments, PutAMassWhereTheLimbEnds) {
     int loaded = 0;
     for (const PlannedExperiment& one : planned) {
       const std::size_t kg = one.sentence.find(" kg ");
-      EXPECT_EQ(kg != one.sentence.npos, one.trial.known.massInHand > 0) << one.sentence;
+      EXPECT_EQ(kg != one.sentence.npos, one.trial.conditions.massInHand > 0) << one.sentence;
       if (kg == one.sentence.npos) continue;
       EXPECT_EQ(one.sentence.find(place, kg), kg + 4) << one.sentence;
       ++loaded;
@@ -92,7 +92,7 @@ TEST(PlannedExperiments, PutAMassWhereTheLimbEnds) {
 TEST(PassiveMotions, FollowTheSweepThatTheyPlan) {
   const ShippedElbow elbow;
   Trial trial = elbow.trial;
-  trial.known.massInHand = 0.5;
+  trial.conditions.massInHand = 0.5;
   trial.applied = {{"elbow_flexion", VectorXd::Constant(trial.times.size(), 0.7)}};
   const MusculoskeletalProblemOptions options;
   const MusculoskeletalProblem data(elbow.model, ShippedElbow::options(), "elbow_flexion", {trial},
@@ -101,10 +101,10 @@ TEST(PassiveMotions, FollowTheSweepThatTheyPlan) {
   ASSERT_EQ(planned.size(), 4U);
   std::set<std::pair<double, double>> known;
   for (const PlannedExperiment& one : planned) {
-    known.insert({one.trial.known.massInHand, std::round(100 * one.trial.known.armTurn)});
+    known.insert({one.trial.conditions.massInHand, std::round(100 * one.trial.conditions.armTurn)});
     EXPECT_NE(one.sentence.find("known_mass_in_hand_kg="), std::string::npos) << one.sentence;
     EXPECT_EQ(one.sentence.find("known_arm_turn_deg=-45") != std::string::npos,
-              one.trial.known.armTurn != 0);
+              one.trial.conditions.armTurn != 0);
     ASSERT_EQ(one.trial.applied.size(), 1U);
     EXPECT_LE(one.trial.excitations.maxCoeff(), 0.01);
     // the limb goes where it should: up to 84.5 or 110.5°, and back
@@ -114,7 +114,8 @@ TEST(PassiveMotions, FollowTheSweepThatTheyPlan) {
     const VectorXd& wanted = one.trial.measured.front().values;
     const double degree = std::numbers::pi / 180;
     EXPECT_NEAR(wanted.minCoeff(), 13 * degree, 1e-8);
-    EXPECT_NEAR(wanted.maxCoeff(), (one.trial.known.armTurn == 0 ? 84.5 : 110.5) * degree, 1e-8);
+    EXPECT_NEAR(wanted.maxCoeff(), (one.trial.conditions.armTurn == 0 ? 84.5 : 110.5) * degree,
+                1e-8);
     EXPECT_LT((motion - wanted).cwiseAbs().maxCoeff(), 0.05 * degree) << one.sentence;
   }
   EXPECT_EQ(known.size(), 4U);

@@ -29,7 +29,7 @@ struct Found {
     trials = {cut(elbow.trial, 1.5), cut(ShippedElbow("elbow8", "curl_fast").trial, 1.0)};
     trials[0].sha256 = std::string(64, '0');
     trials[1].sha256 = std::string(64, '1');
-    trials[1].known.massInHand = knownMass;
+    trials[1].conditions.massInHand = knownMass;
     MusculoskeletalProblemOptions options;
     options.simulation.step = step;
     data = std::make_unique<MusculoskeletalProblem>(elbow.model, ShippedElbow::options(),
@@ -179,10 +179,10 @@ TEST(WithKnownChanges, PutsTheMassInTheHandAndTurnsGravity) {
     return withExperimentalConditions(model, ShippedElbow::options(), "elbow_flexion", trial);
   };
   EXPECT_EQ(changed(elbow.model), elbow.model);
-  trial.known.massInHand = 0.7;
+  trial.conditions.massInHand = 0.7;
   EXPECT_NEAR(findBody(changed(elbow.model), "hand").mass, findBody(elbow.model, "hand").mass + 0.7,
               1e-12);
-  trial.known.armTurn = 0.5;
+  trial.conditions.armTurn = 0.5;
   EXPECT_GT((changed(elbow.model).gravity - elbow.model.gravity).norm(), 1);
 }
 

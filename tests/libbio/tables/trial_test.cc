@@ -75,19 +75,21 @@ TEST_F(TrialFile, AKnownMassIsReadOrRefused) {
            "\nendheader\ntime\tBRA\tTRIlong\n0\t0\t0\n1\t0\t0\n";
   };
   const TrialOptions heeds{.experimentalConditions = true};
-  EXPECT_EQ(read(text("1.25"), heeds, "t.sto").known.massInHand, 1.25);
-  EXPECT_FALSE(read(text("0"), {}, "t.sto").known.any());
+  EXPECT_EQ(read(text("1.25"), heeds, "t.sto").conditions.massInHand, 1.25);
+  EXPECT_FALSE(read(text("0"), {}, "t.sto").conditions.any());
   const Trial turned = read(text("0.5\nknown_arm_turn_deg=-45"), heeds, "t.sto");
-  EXPECT_EQ(turned.known.massInHand, 0.5);
-  EXPECT_DOUBLE_EQ(turned.known.armTurn, -std::numbers::pi / 4);
+  EXPECT_EQ(turned.conditions.massInHand, 0.5);
+  EXPECT_DOUBLE_EQ(turned.conditions.armTurn, -std::numbers::pi / 4);
   EXPECT_TRUE(ExperimentalConditions({.armTurn = 0.1}).any());
-  EXPECT_EQ(inWords(turned.known), "with a known mass of 0.5 kg and the limb turned by -45 deg");
+  EXPECT_EQ(inWords(turned.conditions),
+            "with a known mass of 0.5 kg and the limb turned by -45 deg");
   EXPECT_EQ(inWords({0, 0.1}), "with the limb turned by 5.72957795131 deg");
   EXPECT_EQ(inWords({}), "");
-  EXPECT_THAT(headerOf(turned.known), ElementsAre(std::pair("known_arm_turn_deg", "-45"),
-                                                  std::pair("known_mass_in_hand_kg", "0.5")));
+  EXPECT_THAT(headerOf(turned.conditions), ElementsAre(std::pair("known_arm_turn_deg", "-45"),
+                                                       std::pair("known_mass_in_hand_kg", "0.5")));
   EXPECT_THAT(headerOf({}), SizeIs(0));
-  EXPECT_EQ(experimentalConditionsIn(headerOf(turned.known)).armTurn, turned.known.armTurn);
+  EXPECT_EQ(experimentalConditionsIn(headerOf(turned.conditions)).armTurn,
+            turned.conditions.armTurn);
   // whoever would simulate the arm without it must not read the trial at all
   for (const auto& [value, options, message] :
        {std::tuple{"1.25", TrialOptions{}, "recorded with a known mass of 1.25 kg"},

@@ -82,7 +82,7 @@ std::vector<ChannelCandidate> furtherChannels(const MusculoskeletalSystem& syste
 std::vector<ChannelGain> furtherGains(const std::vector<StudiedTrial>& trials,
                                       const MusculoskeletalSystem& system,
                                       const SensitivityQuestion& question,
-                                      const ParameterInformation& known);
+                                      const ParameterInformation& before);
 /// Whether channelGains() would take longer than a second or two.
 bool gainsTakeLong(std::size_t parameters, std::size_t channels);
 

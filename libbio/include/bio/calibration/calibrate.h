@@ -48,7 +48,7 @@ struct CalibrationOptions {
 struct CalibratedParameter {
   info::Parameter asked;  ///< start, bounds, prior
   double model = 0;       ///< value in the model
-  double known = 0;       ///< prior standard deviation
+  double priorSd = 0;     ///< prior standard deviation
   bool ofTrial = false;   ///< initial state of one trial, not a parameter of the model
   double value = 0;
   bool identifiable = false;

@@ -96,7 +96,7 @@ class TrialSet {
   /// θ of the model and the trials, with the catalogue's bounds; those of trials have a prior.
   const std::vector<info::Parameter>& parameters() const { return parameters_; }
   /// Prior standard deviation of each, in its unit.
-  const Eigen::VectorXd& known() const { return known_; }
+  const Eigen::VectorXd& priorSds() const { return priorSds_; }
 
   /// 1 × samples
   Eigen::MatrixXd measured() const;
@@ -152,7 +152,7 @@ class TrialSet {
   std::vector<Eigen::Index> ownBegin_;
   std::vector<Latent> latent_;
   std::vector<info::Parameter> parameters_;
-  Eigen::VectorXd known_;
+  Eigen::VectorXd priorSds_;
   std::vector<MeasuredSeries> series_;
   std::vector<MeasuredGroup> channels_;
   std::vector<Eigen::Index> begin_ = {0};  ///< where the samples of each trial begin, and their end

@@ -159,8 +159,8 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
     std::vector<Series> series;
     std::vector<double> nodeTimes;
     std::vector<info::discover::Node> nodes;
-    Eigen::VectorXd heldMass;  ///< moment of a mass of 1 kg at the nodes [N·m]
-    Eigen::VectorXd known;     ///< change of the model's quantities by Trial::known
+    Eigen::VectorXd heldMass;    ///< moment of a mass of 1 kg at the nodes [N·m]
+    Eigen::VectorXd conditions;  ///< change of the model's quantities by Trial::known
     std::vector<Start> starts;
   };
   Eigen::VectorXd withTimedForces(const OfTrial& trial, const Eigen::VectorXd& values,

@@ -42,7 +42,7 @@ std::vector<Eigen::MatrixXd> informationOf(const MusculoskeletalSystem& system,
 /// @param candidates  as many as `information`
 /// @param information of each candidate, of all motions together
 /// @throws std::invalid_argument if sizes differ
-std::vector<ChannelGain> channelGains(const ParameterInformation& known,
+std::vector<ChannelGain> channelGains(const ParameterInformation& before,
                                       const std::vector<ChannelCandidate>& candidates,
                                       const std::vector<Eigen::MatrixXd>& information);
 

@@ -68,7 +68,7 @@ class ChainStarts {
                const std::vector<ChainEnds>& ends);
   void descend(const ChainEnds& ends, std::size_t first, std::size_t last, Nearest& best) const;
   Motion motionFrom(std::size_t start, const ChainEnds& ends, const ChainPlacements& X_GC) const;
-  void addChanges(const Known& known);
+  void addChanges(const Known& posture);
 
   std::size_t count_ = 0, numMotions_ = 0;
   std::vector<ChainMemory> starts_;       // in the order of the tree

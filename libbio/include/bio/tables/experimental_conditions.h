@@ -17,10 +17,10 @@ struct ExperimentalConditions {
 };
 
 /// "with a known mass of 1 kg and the limb turned by -45 deg"; empty without any.
-std::string inWords(const ExperimentalConditions& known);
+std::string inWords(const ExperimentalConditions& conditions);
 
 /// The lines of the header; none for unchanged conditions.
-std::map<std::string, std::string> headerOf(const ExperimentalConditions& known);
+std::map<std::string, std::string> headerOf(const ExperimentalConditions& conditions);
 
 /// Names of all such lines.
 const std::vector<std::string>& knownLines();

@@ -36,7 +36,7 @@ struct Trial {
   std::vector<MeasuredChannel> measured;
   /// The course of coordinates of TrialOptions::prescribed and held; one sample: a constant.
   std::vector<MeasuredChannel> prescribed;
-  ExperimentalConditions known;
+  ExperimentalConditions conditions;
   /// Muscles without an electrode, whose column is only what is expected: calibration may correct
   /// it (header line `latent_excitation`, latent_excitation.h).
   std::vector<LatentDeclaration> latent;

@@ -35,7 +35,7 @@ struct Determinacy {
 ///   std::domain_error if I is not finite
 std::vector<Determinacy> determinacy(const Eigen::MatrixXd& information,
                                      const std::vector<Parameter>& parameters,
-                                     const Eigen::VectorXd& known,
+                                     const Eigen::VectorXd& priorSds,
                                      const std::string& outcome = "what was measured");
 
 }  // namespace info

@@ -155,24 +155,24 @@ std::optional<NonparametricForce> raceNonparametric(const Search& search, const 
     const auto widened =
         search.data().withFormula(family.axis, formulaOf(family, coefficients, sd), chosen);
     if (!widened) return {};
-    const auto known = searchMemoryOf(search, chosen, *widened);
+    const auto memory = searchMemoryOf(search, chosen, *widened);
     const auto formula = placeOf(*widened, "formula");
-    if (!known || !formula) return {};
+    if (!memory || !formula) return {};
     Search race(*widened, search.likelihood().trials(), options, sds, report);
-    race.take(*known);
+    race.take(*memory);
     const auto net = [&](const Effects& effects) {
       return race.at(effects).score - options.evidence * static_cast<double>(effects.size());
     };
     std::vector<Effects> besides = {{}};
     if (chosen.size() > 1)
-      for (const std::size_t e : known->chosen)
-        if (race.entries().count(without(known->chosen, e)) > 0)
-          besides.push_back(without(known->chosen, e));
+      for (const std::size_t e : memory->chosen)
+        if (race.entries().count(without(memory->chosen, e)) > 0)
+          besides.push_back(without(memory->chosen, e));
     for (const Effects& rest : besides) {
       race.raceOne(rest, *formula);
       const Effects all = with(rest, *formula);
       if (!race.at(all).works()) continue;
-      const double ahead = net(all) - net(known->chosen);
+      const double ahead = net(all) - net(memory->chosen);
       if (best && best->ahead >= ahead) continue;
       best.emplace();
       best->axis = family.axis;

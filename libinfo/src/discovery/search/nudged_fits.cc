@@ -102,8 +102,8 @@ void Search::continueLed(const Effects& effects, const VectorXd& start) {
   ++fits_;
   if (!fit) return;
   const Entry& entry = at(effects);
-  const bool known = entry.simulation && entry.simulation->logEvidence > fit->logEvidence - kNews;
-  if (!known) improve(effects, fit->values, kSmallSize, nullptr, bestScore() - kGivenUp);
+  const bool isKnown = entry.simulation && entry.simulation->logEvidence > fit->logEvidence - kNews;
+  if (!isKnown) improve(effects, fit->values, kSmallSize, nullptr, bestScore() - kGivenUp);
 }
 
 VectorXd Search::bestStart(const Effects& base, std::size_t candidate, const Fit& near,
@@ -111,12 +111,12 @@ VectorXd Search::bestStart(const Effects& base, std::size_t candidate, const Fit
   const Hypothesis hypothesis = makeHypothesis(data_, with(base, candidate), trials_);
   const Candidate& c = data_.candidates()[candidate];
   const std::size_t starts = isGrid(c) ? 2 : c.starts.size();  // searchGrid covers the whole grid
-  if (const auto known = gridStarts_.find(candidate);
-      known != gridStarts_.end() && known->second.values.size() > 0) {
+  if (const auto start = gridStarts_.find(candidate);
+      start != gridStarts_.end() && start->second.values.size() > 0) {
     // alone, with the nuisance parameters of that fit
-    VectorXd from = latent == 0 && base.empty() ? known->second.values : near.values;
+    VectorXd from = latent == 0 && base.empty() ? start->second.values : near.values;
     const auto amplitude = static_cast<Index>(data_.candidates()[candidate].quantities[0]);
-    from[amplitude] = known->second.values[amplitude];
+    from[amplitude] = start->second.values[amplitude];
     return from;
   }
   const bool held = !nudgedLikelihoods_.empty();

@@ -96,18 +96,19 @@ void Search::improve(const Effects& effects, const VectorXd& start, double size,
     }
   }
   found.jointScore = found.score;
-  const auto known = entries_.find(effects);
-  const bool news = known == entries_.end() || found.jointScore > known->second.jointScore + kNews;
+  const auto former = entries_.find(effects);
+  const bool news =
+      former == entries_.end() || found.jointScore > former->second.jointScore + kNews;
   if (news && found.works() && exceedsNoise(found.fit) &&
       found.score > bestScore() - kMarginalGain) {
     found.fit = likelihood_->marginal(found.fit);
     found.score = scoreOf(found.fit);
   }
-  if (known == entries_.end()) {
+  if (former == entries_.end()) {
     entries_.emplace(effects, std::move(found));
     return;
   }
-  Entry& old = known->second;
+  Entry& old = former->second;
   if (found.simulation &&
       (!old.simulation || found.simulation->logEvidence > old.simulation->logEvidence))
     old.simulation = std::move(found.simulation);
@@ -164,27 +165,27 @@ VectorXd Search::drawn(std::uint64_t start) const {
   return values;
 }
 
-void Search::adopt(const SearchMemory& known) {
-  racedFromNominal_ = known.racedFromNominal;
-  scaleValues_ = known.scaleValues;
+void Search::adopt(const SearchMemory& memory) {
+  racedFromNominal_ = memory.racedFromNominal;
+  scaleValues_ = memory.scaleValues;
   likelihood_.emplace(data_, trials_, scaleValues_, options_.latentTime);
   const auto again = [&](const Entry& entry) {
     report_(describe(data_, entry.effects));
     improve(entry.effects, entry.fit.values, entry.fit.noise.latent, &entry.fit);
   };
-  const Entry& base = known.entries.at({});
+  const Entry& base = memory.entries.at({});
   again(base);
   mustWork();
   const double shift = at({}).score - base.score;
-  const Entry& chosen = known.entries.at(known.chosen);
+  const Entry& chosen = memory.entries.at(memory.chosen);
   const auto net = [&](const Entry& entry) {
     return entry.score - options_.evidence * static_cast<double>(entry.effects.size());
   };
-  for (const auto& [effects, entry] : known.entries) {
+  for (const auto& [effects, entry] : memory.entries) {
     if (effects.empty()) continue;
     const bool part =
-        std::includes(known.chosen.begin(), known.chosen.end(), effects.begin(), effects.end());
-    const bool rival = effects.size() == known.chosen.size() &&
+        std::includes(memory.chosen.begin(), memory.chosen.end(), effects.begin(), effects.end());
+    const bool rival = effects.size() == memory.chosen.size() &&
                        entry.score > chosen.score - options_.classWidth - kDraftError;
     if (entry.works() && (part || rival || net(entry) > net(chosen) - kDraftError)) {
       again(entry);
@@ -196,11 +197,11 @@ void Search::adopt(const SearchMemory& known) {
   }
 }
 
-void Search::take(const SearchMemory& known) {
-  scaleValues_ = known.scaleValues;
+void Search::take(const SearchMemory& former) {
+  scaleValues_ = former.scaleValues;
   likelihood_.emplace(data_, trials_, scaleValues_, options_.latentTime);
-  entries_ = known.entries;
-  racedFromNominal_ = known.racedFromNominal;
+  entries_ = former.entries;
+  racedFromNominal_ = former.racedFromNominal;
 }
 
 void Search::mustWork() const {
@@ -263,17 +264,17 @@ bool Search::refitBase(const Effects& base) {
   std::vector<std::pair<double, std::size_t>> better;
   for (std::size_t c = 0; c < data_.candidates().size(); ++c) {
     if (std::find(base.begin(), base.end(), c) != base.end()) continue;
-    const auto known = entries_.find(with(base, c));
-    if (known == entries_.end() || !(known->second.score > before + options_.evidence)) continue;
-    if (significance(known->second, c) < 2) better.emplace_back(known->second.score, c);
+    const auto former = entries_.find(with(base, c));
+    if (former == entries_.end() || !(former->second.score > before + options_.evidence)) continue;
+    if (significance(former->second, c) < 2) better.emplace_back(former->second.score, c);
   }
   if (better.empty()) return false;
   const std::size_t best = std::max_element(better.begin(), better.end())->second;
   drop(with(base, best), best);
   const double after = at(base).score;
   if (!(after > before + options_.evidence)) return false;
-  std::erase_if(entries_, [&](const auto& known) {
-    const auto& [effects, entry] = known;
+  std::erase_if(entries_, [&](const auto& former) {
+    const auto& [effects, entry] = former;
     return effects.size() > base.size() && entry.score < after &&
            std::includes(effects.begin(), effects.end(), base.begin(), base.end());
   });
@@ -334,10 +335,10 @@ void Search::enforceNesting() {
       if (!entry.works()) continue;
       for (const std::size_t effect : effects) {
         const Effects rest = without(effects, effect);
-        const auto known = entries_.find(rest);
+        const auto former = entries_.find(rest);
         // one that was never fitted is fitted if it would be among the best
-        const bool gains = known != entries_.end() ? entry.score > known->second.score + 1
-                                                   : entry.score > best - 2 * options_.evidence;
+        const bool gains = former != entries_.end() ? entry.score > former->second.score + 1
+                                                    : entry.score > best - 2 * options_.evidence;
         if (!gains || significance(entry, effect) > 2) continue;
         const auto before = asked.find(rest);
         if (before != asked.end() && entry.score < before->second + 1) continue;

@@ -20,11 +20,11 @@ class Translation {
  public:
   Translation(const DiscoveryProblem& from, const DiscoveryProblem& to) : from_(from), to_(to) {
     for (const Quantity& wanted : to.quantities()) {
-      const auto& known = from.quantities();
-      const auto found = std::find_if(known.begin(), known.end(), [&](const Quantity& q) {
+      const auto& quantities = from.quantities();
+      const auto found = std::find_if(quantities.begin(), quantities.end(), [&](const Quantity& q) {
         return q.name == wanted.name && q.trial == wanted.trial;
       });
-      source_.push_back(found == known.end() ? -1 : found - known.begin());
+      source_.push_back(found == quantities.end() ? -1 : found - quantities.begin());
     }
   }
 
@@ -81,19 +81,19 @@ class Translation {
 std::optional<SearchMemory> searchMemoryOf(const Search& search, const Effects& chosen,
                                            const DiscoveryProblem& widened) {
   const Translation translation(search.data(), widened);
-  SearchMemory known;
+  SearchMemory memory;
   for (const auto& [effects, old] : search.entries()) {
     if (!old.works() ||
         !std::includes(chosen.begin(), chosen.end(), effects.begin(), effects.end()))
       continue;
     auto entry = translation.entry(old, search.likelihood().trials());
     if (!entry) return {};
-    if (effects == chosen) known.chosen = entry->effects;
-    known.entries.emplace(entry->effects, std::move(*entry));
+    if (effects == chosen) memory.chosen = entry->effects;
+    memory.entries.emplace(entry->effects, std::move(*entry));
   }
-  known.scaleValues = translation.values(search.scaleValues());
-  known.racedFromNominal = search.hasRacedFromNominal();
-  return known;
+  memory.scaleValues = translation.values(search.scaleValues());
+  memory.racedFromNominal = search.hasRacedFromNominal();
+  return memory;
 }
 
 }  // namespace info::discover
