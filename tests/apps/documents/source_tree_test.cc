@@ -92,6 +92,21 @@ TEST(SourceTree, LibinfoKnowsNoBiology) {
     const std::string text = contentOf(sourceTree / file);
     EXPECT_FALSE(std::regex_search(text, found, words)) << file << " says " << found.str();
   }
+  // mechanics belong to Lagrangian systems and robots; the sentences of verdicts are the exception
+  const std::regex mechanics(
+      "\\bangles?\\b|moment arm|torque|mechanic|\\bjoint (angle|damping|friction|moment|stiffness)",
+      std::regex::icase);
+  EXPECT_TRUE(std::regex_search(std::string("a limit angle"), mechanics));
+  EXPECT_TRUE(std::regex_search(std::string("viscous joint damping"), mechanics));
+  EXPECT_FALSE(std::regex_search(std::string("a triangle, a joint fit"), mechanics));
+  const std::vector<std::string> mechanical = {"libinfo/robots", "libinfo/include/info/dynamics",
+                                               "libinfo/src/dynamics"};
+  for (const std::string& file : sourcesBelow("libinfo")) {
+    if (isBelow(file, mechanical) || file.ends_with("/verdict_sentence.cc")) continue;
+    std::smatch found;
+    const std::string text = contentOf(sourceTree / file);
+    EXPECT_FALSE(std::regex_search(text, found, mechanics)) << file << " says " << found.str();
+  }
 }
 
 TEST(SourceTree, SimbodyIsHiddenInTheSkeleton) {
