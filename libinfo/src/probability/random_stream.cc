@@ -34,10 +34,10 @@ double RandomStream::normal() {
   }
   // 1 − uniform lies in (0, 1], where the logarithm is finite
   const double radius = std::sqrt(-2 * std::log(1 - uniform()));
-  const double angle = 2 * std::numbers::pi * uniform();
-  spare_ = radius * std::sin(angle);
+  const double phase = 2 * std::numbers::pi * uniform();
+  spare_ = radius * std::sin(phase);
   hasSpare_ = true;
-  return radius * std::cos(angle);
+  return radius * std::cos(phase);
 }
 
 }  // namespace info

@@ -10,8 +10,9 @@ namespace info::discover {
 
 /// Third differences of samples that are equally spaced, Σ(Δ³y)²; differences over a gap, a value
 /// that is not finite or another spacing are omitted. Where most samples are not equally spaced, as
-/// of an angle that is slower than the rows of its table, divided differences of four samples whose
-/// intervals differ by a factor of at most 3.5 are taken as well, scaled to the same variance.
+/// of an output that is slower than the rows of its table, divided differences of four samples
+/// whose intervals differ by a factor of at most 3.5 are taken as well, scaled to the same
+/// variance.
 struct ThirdDifferences {
   double squares = 0;
   double count = 0;

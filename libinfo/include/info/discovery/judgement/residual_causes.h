@@ -14,7 +14,7 @@ enum class Cause {
   sensor,  ///< an error c_0 + c_1 y + c_2 y² + c_3 ẏ of the output. An indication, not a test: the
            ///< smoothed y is correlated with the noise that it is compared with
   moments,  ///< a force Σ_i G_i·(c_i z + d_i (z² − 1)), G the non-constant channels of the latent
-            ///< force's scale, z the scaled output: moment arms that vary with the output
+            ///< force's scale, z the scaled output: a scale that varies with the output
 };
 inline constexpr std::array kCauses = {Cause::state, Cause::inputs, Cause::acceleration,
                                        Cause::sensor, Cause::moments};

@@ -31,7 +31,7 @@ struct Quantity {
 /// quantities.
 struct Candidate {
   std::string id;        ///< short, e.g. "visc"
-  std::string name;      ///< e.g. "viscous joint damping"
+  std::string name;      ///< e.g. "viscous damping"
   std::string sentence;  ///< a description in plain words
   EffectKind kind = EffectKind::structure;
   std::vector<std::size_t> quantities;  ///< indices; the amplitude first
@@ -39,7 +39,7 @@ struct Candidate {
   /// is a nuisance parameter of the base model with a wider prior.
   std::vector<double> sds;
   /// Starting values of fits: values of all its quantities, at least one set. At amplitude 0 the
-  /// likelihood does not depend on shape parameters (limit angles, time constants), which therefore
+  /// likelihood does not depend on shape parameters (limits, time constants), which therefore
   /// start from a grid of values.
   std::vector<Eigen::VectorXd> starts;
   std::vector<std::string>
