@@ -219,6 +219,47 @@ class Design(AsTheProgram):
         self.same_limits(found, summary)
         self.same_trial(found, out)
 
+    def test_of_a_held_elbow(self):
+        """Its moment and a fibre are observed, excitations are sought."""
+        names = ["BRA.max_isometric_force", "hand.mass"]
+        summary, _ = self.run_program("design", ELBOW, SLOW, "--parameters", ",".join(names), *self.WORDS, "--iterations", "0",
+                                      "--prescribe", "elbow_flexion", "--observe", "elbow_flexion.moment=0.5", "--observe",
+                                      "BRA.fiber_length=0.001", "--excite", "flexors,extensors")
+        held = fh.load_trial(SLOW, self.model, prescribe=["elbow_flexion"])
+        observe = {"elbow_flexion.moment": 0.5, "BRA.fiber_length": 0.001}
+        found = fh.design(self.model, held, names, observe=observe, excite=["flexors", "extensors"], iterations=0, **self.SEARCH)
+        stub.check(found, "DesignResult")
+        self.assertEqual(sorted(found.observed), sorted(observe))
+        self.assertEqual(found.predicted.shape, (len(found.times), 2))
+        self.assertEqual(found.coordinates, [])
+        self.assertEqual(list(found.trial.prescribed), ["elbow_flexion"])
+        told = fh.sensitivity(self.model, [found.trial], names, observe=observe)
+        for k, name in enumerate(names):
+            self.assertAlmostEqual(found.bound_after[k] / summary["bound_after"][name], 1, 9)
+            self.assertAlmostEqual(found.bound_over_time[-1] / found.bound_after[0], 1, 9)
+        np.testing.assert_allclose(np.linalg.inv(told.fisher).diagonal() ** 0.5, found.bound_after, rtol=1e-8)
+
+    def test_of_two_joints(self):
+        names = ["BRA.max_isometric_force", "hand.mass"]
+        joints = ["elbow_flexion", "shoulder_elv"]
+        summary, _ = self.run_program("design", ELBOW, SLOW, "--parameters", ",".join(names), *self.WORDS, "--iterations", "0",
+                                      "--coordinate", ",".join(joints), "--torque", "elbow_flexion=3", "--torque",
+                                      "shoulder_elv=2", "--range", "shoulder_elv=-3,3", "--speed", "1000")
+        found = fh.design(self.model, self.slow, names, coordinate=joints, torque={"elbow_flexion": 3, "shoulder_elv": 2},
+                          range={"shoulder_elv": (-3, 3)}, speed=1000 * DEGREE, iterations=0, **self.SEARCH)
+        stub.check(found, "DesignResult")
+        self.assertEqual(sorted(found.coordinates), joints)
+        for k, one in enumerate(summary["coordinates"]):
+            self.assertEqual(one["name"], found.coordinates[k])
+            self.assertAlmostEqual(found.lowest[k] / DEGREE, one["lowest"], 9)
+            self.assertEqual(found.largest_torque[k], one["largest_torque"])
+        for k, name in enumerate(names):
+            self.assertEqual(found.bound_after[k], summary["bound_after"][name])
+        apart = fh.separate(self.model, self.slow, "elbow_flexion.visc", "shoulder_elv.visc", coordinate=joints, torque=2,
+                            speed=1000 * DEGREE, candidates=1, generations=0)
+        stub.check(apart, "SeparateResult")
+        self.assertEqual(apart.predicted.shape, (len(apart.times), 2))
+
     def test_of_a_dynamometer(self):
         names = ["TRI.radius", "BRA.max_isometric_force"]
         summary, out = self.run_program("design", ELBOW, "--dynamometer", "elbow_flexion", "--parameters", ",".join(names),
@@ -263,7 +304,13 @@ class Design(AsTheProgram):
             (lambda: fh.separate(self.model, slow, "delay", "clock", rate=1e12), "period .* must be a millionth"),
             (lambda: dynamometer(rate=1e12), "rate must be at most 1e5"),
             (lambda: fh.design_on_dynamometer(self.model, "elbow_flexion", []), "no parameter is given"),
-            (lambda: fh.design(self.model, slow, one, noise=-1), "noise = -1.*must be > 0"),
+            (lambda: fh.design(self.model, slow, one, noise=-1), "noise of 'elbow_flexion' = -1.*must be > 0"),
+            (lambda: fh.design(self.model, slow, one, observe={"elbow_flexion.moment": 1}), "must be prescribed or locked"),
+            (lambda: fh.design(self.model, slow, one, observe={"elbow": 1}), "'elbow' is nothing that can be measured"),
+            (lambda: fh.design(self.model, slow, one, torque={"knee": 1}), "torque of 'knee': must be a coordinate that is free"),
+            (lambda: fh.design(self.model, held, one, observe={"elbow_flexion.moment": 1}), "no input to design"),
+            (lambda: fh.separate(self.model, slow, "delay", "clock", observe={"elbow_flexion.speed": 1}),
+             "'elbow_flexion' is free to move and must be observed"),
             (lambda: fh.design(self.model, slow, one, criterion="T"), "criterion 'T', must be E, A or D"),
             (lambda: fh.design(self.model, slow, one, prior={"hand.mass": 1}), "prior: hand.mass is neither"),
             (lambda: fh.design(self.model, slow, one, range=(2, 1)), "range: 2 to 1 rad, must rise"),
@@ -273,7 +320,7 @@ class Design(AsTheProgram):
             (lambda: fh.design(self.model, slow, one, nuisance=["hand.mass"], monte_carlo=2), "monte_carlo"),
             (lambda: fh.design(self.model, slow, one, integrator="rk4"), "integrator|variational"),
             (lambda: fh.design(self.model, slow, one, candidates=-1), "must be ≥ 0"),
-            (lambda: fh.design(self.model, held, one, candidates=1), "'elbow_flexion' is prescribed"),
+            (lambda: fh.design(self.model, held, one, candidates=1), "nothing is observed|no input to design"),
             (lambda: fh.separate(self.model, slow, "delay", "delay"), "given twice"),
             (lambda: fh.separate(self.model, slow, "delay", "ghost"), "ghost"),
             (lambda: fh.separate(self.model, slow, "delay", "clock", size={"drag": 1}), "'drag' is not one of the two"),

@@ -91,20 +91,27 @@ std::map<std::string, double> boundsTold(std::vector<std::string> more) {
 // observed. Each design is what sensitivity finds in the trial that is written.
 TEST(DesignCommand, ObservesChannelsOfHeldAndOfSeveralFreeCoordinates) {
   const ScratchFolder scratch;
+  const std::string curl = "emg_data/curl_slow.sto";
+  const std::string still = (scratch / "still.csv").string();  // without an angle
+  std::ofstream(still) << "time,BRA,BIClong\n0,0.1,0.1\n1,0.3,0.1\n2,0.1,0.1\n";
   struct Case {
     const char* name;
+    std::string trial;
     std::vector<std::string> roles, observed, inputs;
   };
   const std::vector<Case> cases = {
       {"held",
+       curl,
        {"--prescribe", "elbow_flexion"},
        {"elbow_flexion.moment=0.5"},
        {"--excite", "flexors,extensors"}},
       {"locked",
+       still,
        {"--lock", "elbow_flexion=60deg"},
        {"elbow_flexion.moment=0.5", "BRA.fiber_length=0.001"},
        {"--excite", "flexors"}},
       {"two",
+       curl,
        {"--coordinate", "elbow_flexion", "--coordinate", "shoulder_elv"},
        {"elbow_flexion=0.5deg", "shoulder_elv=1deg", "elbow_flexion.speed=5deg",
         "BRA.fiber_length=0.001"},
@@ -118,7 +125,7 @@ TEST(DesignCommand, ObservesChannelsOfHeldAndOfSeveralFreeCoordinates) {
     }
     std::vector<std::string> command = {"design",
                                         "models/elbow8.osim",
-                                        "emg_data/curl_slow.sto",
+                                        one.trial,
                                         "--parameters",
                                         "BRA.max_isometric_force,hand.mass",
                                         "--priors",
@@ -141,7 +148,9 @@ TEST(DesignCommand, ObservesChannelsOfHeldAndOfSeveralFreeCoordinates) {
     }
     const bool isTwo = std::string(one.name) == "two";
     EXPECT_EQ(summary["coordinates"].size(), isTwo ? 2u : 0u);
-    if (isTwo) EXPECT_EQ(summary["coordinates"][0]["torque_unit"], "N m");
+    if (isTwo) {
+      EXPECT_EQ(summary["coordinates"][0]["torque_unit"], "N m");
+    }
     observing.insert(observing.end(), {out + "/design.sto", "--parameters",
                                        "BRA.max_isometric_force,hand.mass", "--json"});
     for (const auto& [name, bound] : boundsTold(observing)) {
@@ -162,7 +171,7 @@ TEST(DesignCommand, SaysWhatCannotBeObservedOrPushed) {
     EXPECT_THAT(result.err, HasSubstr(words));
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   };
-  const std::vector<std::string> held = {"--prescribe", "elbow_flexion"};
+  const std::vector<std::string> held = {"--prescribe", "elbow_flexion", "--prescribe-cutoff", "6"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.end(), held.begin(), held.end());
     return more;
