@@ -74,10 +74,8 @@ void refuseOptionsOfSearch(const DesignOptions& typed) {
   }
 }
 
-}  // namespace
-
-void addDesignOptions(CLI::App& options, DesignOptions& typed) {
-  addModelArgument(options, typed.model);
+/// The question: effects or parameters, and the criterion.
+void addQuestion(CLI::App& options, DesignOptions& typed) {
   options
       .add_option("TRIAL", typed.trial,
                   "baseline trial to improve on: excitations, duration, initial state; required "
@@ -117,6 +115,10 @@ void addDesignOptions(CLI::App& options, DesignOptions& typed) {
                   "of variances; D: the volume of the confidence ellipsoid")
       ->check(CLI::IsMember({"E", "A", "D"}))
       ->capture_default_str();
+}
+
+/// The observed channels and the inputs that a search may change, with their limits.
+void addPlan(CLI::App& options, DesignOptions& typed) {
   const auto number = [&](const std::string& name, double& target, const std::string& unit,
                           const std::string& description) {
     options.add_option(name, target, description)->type_name(unit)->capture_default_str();
@@ -139,9 +141,12 @@ void addDesignOptions(CLI::App& options, DesignOptions& typed) {
       ->type_name("[NAME=]NM")
       ->allow_extra_args(false);
   number("--torque-rate", typed.limits.torqueRate, "NM/S", "how fast it may change");
-  names("--excite", typed.excite,
-        "muscles whose excitations are designed: flexors, extensors (of the first coordinate; of "
-        "another: NAME.flexors), or names; BRA+BRD share one excitation")
+  options
+      .add_option("--excite", typed.excite,
+                  "muscles whose excitations are designed: flexors, extensors (of the first "
+                  "coordinate; of another: NAME.flexors), or names; BRA+BRD share one excitation")
+      ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("GROUPS");
   number("--excitation-max", typed.limits.largestExcitation, "0-1",
          "largest excitation of a group");
@@ -158,6 +163,10 @@ void addDesignOptions(CLI::App& options, DesignOptions& typed) {
          "respect the range even if the parameters are K prior standard deviations off");
   number("--knots", typed.knots, "SECONDS",
          "interval between the knots of the piecewise linear inputs");
+}
+
+/// The effort of the search.
+void addSearch(CLI::App& options, DesignOptions& typed) {
   const auto count = [&](const std::string& name, int& target, const std::string& description) {
     options.add_option(name, target, description)
         ->check(CLI::Range(0, 1000000))
@@ -171,6 +180,15 @@ void addDesignOptions(CLI::App& options, DesignOptions& typed) {
   count("--monte-carlo", typed.monteCarlo,
         "number of simulated and estimated repetitions of the designed experiment, to confirm "
         "the bounds");
+}
+
+}  // namespace
+
+void addDesignOptions(CLI::App& options, DesignOptions& typed) {
+  addModelArgument(options, typed.model);
+  addQuestion(options, typed);
+  addPlan(options, typed);
+  addSearch(options, typed);
   addDynamometerOptions(options, typed.dynamometer);
   addSimulationOptions(options, typed.simulation);
   addPrescribing(options, typed.simulation);
