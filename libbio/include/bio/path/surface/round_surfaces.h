@@ -34,7 +34,7 @@ class SphereSurface {
 static_assert(ImplicitSurface<SphereSurface>);
 
 /// Endless cylinder about z, g = ½(x² + y² − r²), radius r [m] > 0. Where it is alone on a span,
-/// bio/wrap_cylinder.h is the closed form of the same path.
+/// wrap_cylinder.h is the closed form of the same path.
 class CylinderSurface {
  public:
   static constexpr int numNumbers = 1;

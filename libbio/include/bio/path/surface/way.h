@@ -10,7 +10,7 @@ namespace bio {
 /// in the surface's frame; for a quadrant as in OpenSim's files, `side` is ±x, ±y or ±z.
 ///
 /// From the chord's deepest point, across the chord and towards the side, to where that leaves the
-/// surface: the middle of the path lies on the named side, as with bio/wrap_rule.h for cylinders
+/// surface: the middle of the path lies on the named side, as with wrap_rule.h for cylinders
 /// and spheres. Where the chord passes by the surface, the surface's farthest point on that side.
 /// Decide once, in a reference posture, and keep it; OpenSim decides in every posture.
 /// A torus is passed through its hole, whatever the side: the hint lies where the tube's inner side
