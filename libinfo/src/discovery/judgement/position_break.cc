@@ -75,9 +75,9 @@ PositionBreak largestBreak(const std::vector<Visit>& nodes, double squares) {
   const double least = kLeastSpread * kLeastSpread * squares / static_cast<double>(nodes.size());
   for (int k = 1; k < kThresholds; ++k)
     for (const bool above : {true, false}) {
-      const PositionBreak break =
+      const PositionBreak found =
           breakAt(nodes, from + k * range / kThresholds, above, kBeside * range, least);
-      if (std::abs(break.z) > std::abs(best.z)) best = break;
+      if (std::abs(found.z) > std::abs(best.z)) best = found;
     }
   best.margin = kMargin * range;
   return best;
@@ -100,9 +100,9 @@ std::optional<PositionBreak> breakOf(const DiscoveryProblem& data, const Options
       squares += force.squaredNorm();
       for (Index k = 1; k < force.size(); ++k) nodes.push_back({positions[t][k], force[k]});
     }
-    PositionBreak break = largestBreak(nodes, squares);
-    break.axis = axis;
-    if (std::abs(break.z) > std::abs(best.z)) best = break;
+    PositionBreak found = largestBreak(nodes, squares);
+    found.axis = axis;
+    if (std::abs(found.z) > std::abs(best.z)) best = found;
   }
   if (std::abs(best.z) < kStandardErrors) return {};
   return best;
