@@ -32,8 +32,8 @@ nlohmann::ordered_json asJson(const bio::MuscleFit& fit) {
   json["terms"] = polynomialOf(*fit.fit).coefficients.size();
   json["postures"] = fit.fit->postures;
   json["length_error_m"] = {{"rms", fit.fit->length.rms}, {"largest", fit.fit->length.largest}};
-  if (std::isfinite(fit.fit->system.rms)) {
-    json["arm_error_m"] = {{"rms", fit.fit->system.rms}, {"largest", fit.fit->system.largest}};
+  if (std::isfinite(fit.fit->arm.rms)) {
+    json["arm_error_m"] = {{"rms", fit.fit->arm.rms}, {"largest", fit.fit->arm.largest}};
   }
   return json;
 }
@@ -50,8 +50,8 @@ void writeFits(const std::vector<bio::MuscleFit>& fits, std::ostream& out) {
     const bio::MultivariatePolynomial& polynomial = polynomialOf(*fit.fit);
     out << ',' << fmt::format("{}", fmt::join(fit.fit->function.coordinates, "|")) << ','
         << polynomial.order << ',' << polynomial.coefficients.size();
-    for (const double error : {fit.fit->length.rms, fit.fit->length.largest, fit.fit->system.rms,
-                               fit.fit->system.largest}) {
+    for (const double error :
+         {fit.fit->length.rms, fit.fit->length.largest, fit.fit->arm.rms, fit.fit->arm.largest}) {
       out << ',' << cellText(1000 * error);
     }
     out << '\n';
@@ -83,7 +83,7 @@ Report reportOnFit(const std::string& file, const std::vector<bio::MuscleFit>& f
     };
     table.rows.push_back({fit.muscle, std::to_string(polynomialOf(*fit.fit).order),
                           fmt::format("{}", fmt::join(fit.fit->function.coordinates, ", ")),
-                          pair(fit.fit->length), pair(fit.fit->system), answer});
+                          pair(fit.fit->length), pair(fit.fit->arm), answer});
   }
   report.verdict = fmt::format("{} of {} paths are written as polynomials", written, fits.size());
   if (written > 0) {

@@ -220,10 +220,9 @@ class MomentArms : public Command {
     const std::vector<double> x(shown.begin(), shown.end());
     for (std::size_t i = 0; i < sample.muscles.size(); ++i) {
       const auto c = static_cast<Eigen::Index>(i);
-      const Eigen::VectorXd system = sample.momentArm.col(c) * 1e3;
+      const Eigen::VectorXd arm = sample.momentArm.col(c) * 1e3;
       const Eigen::VectorXd length = sample.length.col(c) * 1e3;
-      arms.series.push_back(
-          {.name = sample.muscles[i], .x = x, .y = {system.begin(), system.end()}});
+      arms.series.push_back({.name = sample.muscles[i], .x = x, .y = {arm.begin(), arm.end()}});
       lengths.series.push_back(
           {.name = sample.muscles[i], .x = x, .y = {length.begin(), length.end()}});
     }

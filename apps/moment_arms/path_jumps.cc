@@ -65,8 +65,8 @@ nlohmann::ordered_json differencesAsJson(const std::vector<bio::OpenSimDifferenc
                    {"ellipsoids", difference.ellipsoids},
                    {"length_mm", 1000 * difference.length},
                    {"length_at_" + unit, at(difference.lengthAt)},
-                   {"moment_arm_mm", 1000 * difference.system},
-                   {"moment_arm_at_" + unit, at(difference.systemAt)},
+                   {"moment_arm_mm", 1000 * difference.arm},
+                   {"moment_arm_at_" + unit, at(difference.armAt)},
                    {"apart_" + unit, apart},
                    {"opensim_jumps", jumps}});
   }
@@ -96,8 +96,8 @@ Table differenceTable(const std::vector<bio::OpenSimDifference>& differences) {
     for (const auto& jump : difference.jumps) jumps.push_back(largest(jump.size, jump.at));
     table.rows.push_back(
         {difference.muscle, fmt::format("{}", fmt::join(difference.ellipsoids, ", ")),
-         largest(difference.length, difference.lengthAt),
-         largest(difference.system, difference.systemAt), fmt::format("{}", fmt::join(apart, ", ")),
+         largest(difference.length, difference.lengthAt), largest(difference.arm, difference.armAt),
+         fmt::format("{}", fmt::join(apart, ", ")),
          jumps.empty() ? "–" : fmt::format("{}", fmt::join(jumps, ", "))});
   }
   return table;

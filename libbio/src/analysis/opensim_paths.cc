@@ -192,7 +192,7 @@ std::string describe(const OpenSimDifference& difference) {
       "in OpenSim the path of {} over {} differs from the taut string by up to {:.3g} mm, its "
       "moment arm by up to {:.3g} mm, along {} ({:.3g} mm or more at {} {})",
       difference.muscle, fmt::join(difference.ellipsoids, ", "), 1000 * std::abs(difference.length),
-      1000 * std::abs(difference.system), difference.coordinate, 1000 * leastOpenSimDifference,
+      1000 * std::abs(difference.arm), difference.coordinate, 1000 * leastOpenSimDifference,
       fmt::join(ranges, ", "), difference.turns ? "deg" : "mm");
   if (difference.jumps.empty()) return text;
   double largest = 0;

@@ -183,8 +183,8 @@ void addErrors(const MultivariatePolynomial& polynomial, const SampledPath& path
     fit.length.largest = std::max(fit.length.largest, off);
     for (Eigen::Index i = 0; i < path.slope.cols() && path.slope.rows() > 0; ++i) {
       const double askew = std::abs(p.first[static_cast<std::size_t>(i)] - path.slope(k, i));
-      fit.system.rms += askew * askew;
-      fit.system.largest = std::max(fit.system.largest, askew);
+      fit.arm.rms += askew * askew;
+      fit.arm.largest = std::max(fit.arm.largest, askew);
     }
   }
 }
@@ -198,8 +198,8 @@ PathFit judged(MultivariatePolynomial polynomial, const SampledPath& fitted,
   fit.length.rms = std::sqrt(fit.length.rms / static_cast<double>(fit.postures));
   const auto arms = static_cast<double>(fitted.slope.size() + held.slope.size());
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  fit.system = arms > 0 ? FitError{std::sqrt(fit.system.rms / arms), fit.system.largest}
-                        : FitError{nan, nan};
+  fit.arm =
+      arms > 0 ? FitError{std::sqrt(fit.arm.rms / arms), fit.arm.largest} : FitError{nan, nan};
   fit.meetsTolerance = fit.length.largest <= tolerance;
   fit.function = {fitted.coordinates, std::move(polynomial)};
   return fit;
