@@ -1,9 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -73,130 +71,179 @@ TEST(DesignCommand, SaysNoWhenNothingBetterIsFound) {
   EXPECT_THAT(result.out, HasSubstr("No experiment was found"));
 }
 
-/// The bounds that `sensitivity` finds in a designed trial.
-std::map<std::string, double> boundsTold(std::vector<std::string> more) {
-  std::vector<std::string> command = {"sensitivity", "models/elbow8.osim"};
-  command.insert(command.end(), more.begin(), more.end());
-  const ProgramResult result = support::runFisherHill(command);
-  EXPECT_EQ(result.status, 0) << result.err;
-  std::map<std::string, double> bounds;
-  if (result.status != 0) return bounds;
-  for (const auto& one : nlohmann::json::parse(result.out)["parameters"]) {
-    bounds[one["name"]] = one["bound_joint"];
-  }
-  return bounds;
-}
-
-// A dynamometer moves the elbow and reads its moment; two joints are pushed and everything is
-// observed. Each design is what sensitivity finds in the trial that is written.
-TEST(DesignCommand, ObservesChannelsOfHeldAndOfSeveralFreeCoordinates) {
+// One after the other, each adds; uncertain excitations need both groups.
+TEST(DesignCommand, RanksExperimentsOfADynamometer) {
   const ScratchFolder scratch;
-  const std::string curl = "emg_data/curl_slow.sto";
-  const std::string still = (scratch / "still.csv").string();  // without an angle
-  std::ofstream(still) << "time,BRA,BIClong\n0,0.1,0.1\n1,0.3,0.1\n2,0.1,0.1\n";
-  struct Case {
-    const char* name;
-    std::string trial;
-    std::vector<std::string> roles, observed, inputs;
-  };
-  const std::vector<Case> cases = {
-      {"held",
-       curl,
-       {"--prescribe", "elbow_flexion"},
-       {"elbow_flexion.moment=0.5"},
-       {"--excite", "flexors,extensors"}},
-      {"locked",
-       still,
-       {"--lock", "elbow_flexion=60deg"},
-       {"elbow_flexion.moment=0.5", "BRA.fiber_length=0.001"},
-       {"--excite", "flexors"}},
-      {"two",
-       curl,
-       {"--coordinate", "elbow_flexion", "--coordinate", "shoulder_elv"},
-       {"elbow_flexion=0.5deg", "shoulder_elv=1deg", "elbow_flexion.speed=5deg",
-        "BRA.fiber_length=0.001"},
-       {"--torque", "elbow_flexion=3", "--torque", "shoulder_elv=2", "--range",
-        "shoulder_elv=-170deg,170deg", "--speed", "1000"}}};
-  for (const Case& one : cases) {
-    const std::string out = (scratch / one.name).string();
-    std::vector<std::string> observing = one.roles;
-    for (const std::string& each : one.observed) {
-      observing.insert(observing.end(), {"--observe", each});
+  const std::string out = (scratch / "design").string();
+  const std::vector<std::string> names = {"BRA.max_isometric_force", "TRIlong.max_isometric_force"};
+  const ProgramResult result =
+      support::runFisherHill({"design",        "models/elbow8.osim",
+                              "--dynamometer", "elbow_flexion",
+                              "--parameters",  names[0] + "," + names[1],
+                              "--angles",      "40deg,100deg",
+                              "--speeds",      "60deg",
+                              "--efforts",     "50",
+                              "--kinds",       "isometric,isokinetic,passive",
+                              "--experiments", "3",
+                              "--step",        "0.01",
+                              "--out",         out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json summary = designSummary(out);
+  EXPECT_EQ(summary["candidates"], 2 * 2 + 2 * (1 + 2));
+  ASSERT_EQ(summary["experiments"].size(), 3u);
+  for (const std::string& name : names) {
+    double before = summary["bound_before"][name];
+    for (const auto& one : summary["experiments"]) {
+      EXPECT_LE(one["bounds"][name], before * (1 + 1e-12));
+      before = one["bounds"][name];
     }
-    std::vector<std::string> command = {"design",
-                                        "models/elbow8.osim",
-                                        one.trial,
-                                        "--parameters",
-                                        "BRA.max_isometric_force,hand.mass",
-                                        "--priors",
-                                        "--candidates",
-                                        "8",
-                                        "--generations",
-                                        "1",
-                                        "--iterations",
-                                        "0",
-                                        "--out",
-                                        out};
-    command.insert(command.end(), observing.begin(), observing.end());
-    command.insert(command.end(), one.inputs.begin(), one.inputs.end());
-    const ProgramResult result = support::runFisherHill(command);
-    ASSERT_LE(result.status, 1) << one.name << result.err;
-    const nlohmann::json summary = designSummary(out);
-    ASSERT_EQ(summary["outputs"].size(), one.observed.size()) << one.name;
-    for (std::size_t o = 0; o < one.observed.size(); ++o) {
-      EXPECT_TRUE(one.observed[o].starts_with(summary["outputs"][o]["name"].get<std::string>()));
-    }
-    const bool isTwo = std::string(one.name) == "two";
-    EXPECT_EQ(summary["coordinates"].size(), isTwo ? 2u : 0u);
-    if (isTwo) {
-      EXPECT_EQ(summary["coordinates"][0]["torque_unit"], "N m");
-    }
-    observing.insert(observing.end(), {out + "/design.sto", "--parameters",
-                                       "BRA.max_isometric_force,hand.mass", "--json"});
-    for (const auto& [name, bound] : boundsTold(observing)) {
-      EXPECT_NEAR(bound / summary["bound_after"][name].get<double>(), 1, 1e-9)
-          << one.name << " " << name;
-    }
-    std::ifstream file(out + "/report.html");
-    const std::string report((std::istreambuf_iterator<char>(file)), {});
-    EXPECT_THAT(report, HasSubstr(isTwo ? "shoulder_elv [deg]" : "elbow_flexion.moment [N m]"));
+    EXPECT_EQ(summary["bound_after"][name], before);
+    EXPECT_LT(before, 0.5 * summary["bound_before"][name].get<double>()) << name;
   }
+  // none twice
+  EXPECT_NE(summary["experiments"][0]["instruction"], summary["experiments"][1]["instruction"]);
+  EXPECT_THAT(summary["experiments"][0]["instruction"].get<std::string>(), HasSubstr("50 % MVC"));
+  // where excitations are uncertain, each group has to show what it can do
+  const ProgramResult unsure = support::runFisherHill(
+      {"design", "models/elbow8.osim", "--dynamometer", "elbow_flexion", "--parameters",
+       "BIClong.max_isometric_force,TRIlong.max_isometric_force", "--nuisance", "emg.*.gain",
+       "--angles", "40deg,100deg", "--speeds", "60deg", "--efforts", "50", "--experiments", "4",
+       "--step", "0.01", "--json"});
+  ASSERT_EQ(unsure.status, 0) << unsure.err;
+  const auto wide = nlohmann::json::parse(unsure.out);
+  std::set<std::string> groups;
+  for (const auto& one : wide["experiments"]) groups.insert(one["muscles"]);
+  EXPECT_TRUE(groups.contains("flexors") && groups.contains("extensors"));
+  EXPECT_GT(wide["bound_after"]["TRIlong.max_isometric_force"], summary["bound_after"][names[1]]);
 }
 
-TEST(DesignCommand, SaysWhatCannotBeObservedOrPushed) {
-  const auto refused = [](const std::vector<std::string>& more, const char* words) {
-    const ScratchFolder scratch;
-    const ProgramResult result = design((scratch / "design").string(), more);
-    EXPECT_EQ(result.status, 2) << words << result.out;
+// Bounds after the first experiment are those that sensitivity has for its trial.
+class FirstExperiment : public testing::TestWithParam<std::string> {};
+TEST_P(FirstExperiment, HasTheBoundsThatSensitivityFinds) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "design").string(), told = (scratch / "told").string();
+  const std::string kind = GetParam();
+  const std::string names = "BRA.max_isometric_force,TRIlong.optimal_fiber_length";
+  const bool isFree = kind == "isotonic";
+  std::vector<std::string> command = {"design",        "models/elbow8.osim",
+                                      "--dynamometer", "elbow_flexion",
+                                      "--parameters",  names,
+                                      "--angles",      "40deg,100deg",
+                                      "--kinds",       kind,
+                                      "--experiments", "1",
+                                      "--step",        "0.01",
+                                      "--out",         out};
+  if (isFree) command.insert(command.end(), {"--noise", "0.7"});
+  const ProgramResult result = support::runFisherHill(command);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json first = designSummary(out)["experiments"][0];
+  EXPECT_EQ(first["kind"], kind);
+  command = {"sensitivity",
+             "models/elbow8.osim",
+             out + "/experiment_1.csv",
+             "--parameters",
+             names,
+             "--observe",
+             isFree ? "elbow_flexion=0.7deg" : "elbow_flexion.moment=0.5",
+             "--step",
+             "0.01",
+             "--out",
+             told};
+  if (!isFree) command.insert(command.end(), {"--prescribe", "elbow_flexion"});
+  const ProgramResult sensitivity = support::runFisherHill(command);
+  ASSERT_EQ(sensitivity.status, 0) << sensitivity.err;
+  const nlohmann::json found = designSummary(told);
+  ASSERT_EQ(found["parameters"].size(), 2u);
+  for (const auto& one : found["parameters"]) {
+    const double bound = first["bounds"][one["name"].get<std::string>()];
+    EXPECT_NEAR(one["bound_joint"].get<double>() / bound, 1, 1e-9) << one["name"];
+  }
+}
+INSTANTIATE_TEST_SUITE_P(OfADynamometer, FirstExperiment,
+                         testing::Values("isometric", "isokinetic", "passive", "release",
+                                         "isotonic"),
+                         [](const auto& kind) { return kind.param; });
+
+// Let go against the torque in its file, the joint moves as its column says; instructions name the
+// torque, and the angle is the only thing that is missing.
+TEST(DesignCommand, WritesIsotonicTrialsThatReplay) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "design").string();
+  const ProgramResult result = support::runFisherHill(
+      {"design", "models/elbow8.osim", "--dynamometer", "elbow_flexion", "--parameters",
+       "BRA.max_isometric_force", "--kinds", "isotonic,release", "--loads", "60", "--efforts", "40",
+       "--releases", "5deg,15deg", "--experiments", "20", "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json summary = designSummary(out);
+  EXPECT_EQ(summary["candidates"], 2 * 4 * (1 + 2));
+  int isotonic = 0;
+  for (std::size_t n = 0; n < summary["experiments"].size(); ++n) {
+    const nlohmann::json one = summary["experiments"][n];
+    if (one["kind"] != "isotonic") {
+      EXPECT_THAT(one["instruction"].get<std::string>(), HasSubstr("after 1 s turn to"));
+      continue;
+    }
+    ++isotonic;
+    EXPECT_THAT(one["instruction"].get<std::string>(),
+                HasSubstr(one["torque_Nm"] < 0 ? "pushes the angle down" : "pushes the angle up"));
+    const ProgramResult replay =
+        support::runFisherHill({"replay", "models/elbow8.osim",
+                                out + "/experiment_" + std::to_string(n + 1) + ".csv", "--json"});
+    ASSERT_EQ(replay.status, 0) << replay.err;
+    EXPECT_LT(nlohmann::json::parse(replay.out)["rms_error_deg"], 1e-6);
+  }
+  EXPECT_GT(isotonic, 4);
+  std::ifstream file(out + "/report.html");
+  const std::string report((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_THAT(report, HasSubstr("replace it by the recorded one"));
+}
+
+TEST(DesignCommand, RefusesExperimentsThatADynamometerCannotDo) {
+  const auto refused = [](std::vector<std::string> more, const char* words) {
+    std::vector<std::string> command = {"design", "models/elbow8.osim", "--parameters",
+                                        "BRA.max_isometric_force"};
+    command.insert(command.end(), more.begin(), more.end());
+    const ProgramResult result = support::runFisherHill(command);
+    EXPECT_EQ(result.status, 2) << result.err;
     EXPECT_THAT(result.err, HasSubstr(words));
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
   };
-  const std::vector<std::string> held = {"--prescribe", "elbow_flexion", "--prescribe-cutoff", "6"};
-  const auto with = [&](std::vector<std::string> more) {
-    more.insert(more.end(), held.begin(), held.end());
-    return more;
-  };
-  refused(held, "no coordinate is free to be observed: --observe must name what is measured");
-  refused(with({"--observe", "elbow_flexion.moment=0.5"}), "no input to design");
-  refused(with({"--observe", "elbow_flexion.moment=0.5", "--excite", "BRA", "--torque", "3"}),
-          "--torque: no coordinate is free to move");
-  refused(with({"--observe", "elbow_flexion.moment=0.5", "--torque", "elbow_flexion=3"}),
-          "torque of 'elbow_flexion': must be a coordinate that is free to move");
-  refused({"--observe", "elbow_flexion.moment=0.5"}, "is free to move, where nothing holds it");
-  refused({"--observe", "elbow_flexion=0deg"}, "must be > 0");
-  refused({"--observe", "elbow_flexoin=1deg"}, "'elbow_flexoin' is nothing that can be measured");
-  refused({"--observe", "elbow_flexion=1deg", "--observe", "elbow_flexion=2deg"},
-          "'elbow_flexion' is observed twice");
-  refused({"--observe", "elbow_flexion=1deg", "--noise", "1"}, "--noise cannot be combined");
-  refused({"--torque", "x"}, "--torque: ");
-  refused({"--torque", "-1"}, "must be ≥ 0");
-  refused({"--torque", "1", "--torque", "2"}, "--torque: '2' is given twice");
-  refused({"--torque", "knee=2"}, "torque of 'knee': must be a coordinate that is free");
-  refused({"--range", "10deg"}, "'10deg' must be LOW,HIGH");
-  refused({"--range", "60deg,10deg"}, "must rise");
-  refused(
-      {"--coordinate", "elbow_flexion", "--coordinate", "shoulder_elv", "--range", "10deg,60deg"},
-      "range: must name its coordinate, of which 2 are free");
+  refused({}, "either TRIAL or --dynamometer is required");
+  refused({"emg_data/curl_slow.sto", "--dynamometer", "elbow_flexion"}, "and not both");
+  refused({"--dynamometer", "elbow_flexion", "--priors"}, "cannot be combined with --dynamometer");
+  refused({"--dynamometer", "knee"}, "knee");
+  refused({"--dynamometer", "elbow_flexion", "--angles", "400deg"}, "is outside the range");
+  refused({"--dynamometer", "elbow_flexion", "--angles", "x"}, "--angles: ");
+  refused({"--dynamometer", "elbow_flexion", "--speeds", "-1deg"},
+          "--speeds: -0.01745 rad/s (-1 deg/s), must be > 0");
+  refused({"--dynamometer", "elbow_flexion", "--efforts", "120"}, "at most 100");
+  refused({"--dynamometer", "elbow_flexion", "--efforts", "0.5"}, "must be > 1");
+  refused({"--dynamometer", "elbow_flexion", "--speeds", "1deg"}, "these would take");
+  refused({"--dynamometer", "elbow_flexion", "--angles", "60deg,62deg", "--speeds", "120deg"},
+          "these would take 0.0167 s");
+  refused({"--dynamometer", "elbow_flexion", "--coordinate", "elbow_flexion"}, "--coordinate");
+  refused({"--dynamometer", "elbow_flexion", "--lock", "elbow_flexion=60deg"},
+          "must not be locked");
+  refused({"emg_data/curl_slow.sto", "--angles", "60deg"}, "--dynamometer");
+  refused({"--dynamometer", "elbow_flexion", "--kinds", "isotnic"}, "isotnic");
+  refused({"--dynamometer", "elbow_flexion", "--loads", "100"}, "below 100");
+  refused({"--dynamometer", "elbow_flexion", "--releases", "0deg"},
+          "releases: 0 rad (0 deg), must be > 0");
+  refused({"--dynamometer", "elbow_flexion", "--release-speed", "300deg"}, "at least 8 samples");
+  refused({"--dynamometer", "elbow_flexion", "--speeds", "501deg"},
+          "at most the largest speed, 8.727 rad/s (500 deg/s)");
+  refused({"--dynamometer", "elbow_flexion", "--kinds", "isometric", "--loads", "50"},
+          "loads: must have isotonic among the kinds of experiments");
+  // what only a search uses, or a measured angle
+  for (const char* option : {"--iterations", "--generations", "--candidates", "--torque",
+                             "--torque-rate", "--excitation-max", "--excitation-rate", "--knots"}) {
+    refused({"--dynamometer", "elbow_flexion", option, "1"},
+            (std::string(option) + " cannot be combined with --dynamometer").c_str());
+  }
+  refused({"--dynamometer", "elbow_flexion", "--criterion", "A", "--initial", "elbow_flexion=1"},
+          "--criterion, --initial cannot be combined with --dynamometer");
+  refused({"--dynamometer", "elbow_flexion", "--kinds", "isometric", "--noise", "1"},
+          "--noise: the angle is measured in isotonic experiments only");
+  refused({"--dynamometer", "elbow_flexion", "--moment-noise", "0"}, "must be > 0");
 }
 
 TEST(DesignCommand, TellsTwoEffectsApart) {
@@ -221,41 +268,6 @@ TEST(DesignCommand, TellsTwoEffectsApart) {
       {"replay", "models/elbow8.osim", out + "/design.sto", "--out", played});
   ASSERT_EQ(replay.status, 0) << replay.err;
   EXPECT_LT(designSummary(played)["rms_error_deg"], 0.01);  // cubics between rows
-}
-
-// Both joints are pushed and observed; a dynamometer's moment.
-TEST(DesignCommand, TellsTwoEffectsApartBySeveralChannels) {
-  const ScratchFolder scratch;
-  const auto separated = [&](const char* name, const char* effects, std::vector<std::string> more) {
-    const std::string out = (scratch / name).string();
-    std::vector<std::string> command = {"design",
-                                        "models/elbow8.osim",
-                                        "emg_data/curl_slow.sto",
-                                        "--separate",
-                                        effects,
-                                        "--candidates",
-                                        "2",
-                                        "--generations",
-                                        "0",
-                                        "--out",
-                                        out};
-    command.insert(command.end(), more.begin(), more.end());
-    const ProgramResult result = support::runFisherHill(command);
-    EXPECT_LE(result.status, 1) << result.err;
-    return designSummary(out);
-  };
-  const nlohmann::json moment = separated("held", "fatigue,shape",
-                                          {"--prescribe", "elbow_flexion", "--observe",
-                                           "elbow_flexion.moment=0.5", "--excite", "flexors"});
-  EXPECT_EQ(moment["outputs"][0]["unit"], "N m");
-  EXPECT_TRUE(moment["coordinates"].empty());
-  EXPECT_GT(moment["nats_after"]["fatigue"], 0);
-  const nlohmann::json two =
-      separated("two", "elbow_flexion.visc,shoulder_elv.visc",
-                {"--coordinate", "elbow_flexion,shoulder_elv", "--torque", "3", "--speed", "1000"});
-  EXPECT_EQ(two["outputs"].size(), 2u);
-  EXPECT_EQ(two["coordinates"].size(), 2u);
-  EXPECT_GT(two["nats_before"]["shoulder_elv.visc"], 0);
 }
 
 }  // namespace

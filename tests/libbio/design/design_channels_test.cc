@@ -121,6 +121,8 @@ TEST(DesignChannels, PushTwoCoordinatesAndObserveWhatSensitivityDoes) {
     EXPECT_GT(design.inputs().largestTorque(e.trial, name), 0);
     EXPECT_LE(design.inputs().largestTorque(e.trial, name), 2);
   }
+  EXPECT_NE(design.inputs().torqueOf(e.trial, "elbow_flexion"),
+            design.inputs().torqueOf(e.trial, "shoulder_elv"));
   // what is written begins where the experiment does and has every channel
   EXPECT_EQ(plannedTable(roles.system, e.trial).columns.size(), 1 + 8 + 2 + 2 + 3);
 }
