@@ -110,7 +110,7 @@ std::string subcommandSection(const DescribedCommand& program, const DescribedCo
   for (const DescribedOption& option : command.options) {
     if (isShared(program, option)) continue;
     auto group = std::find_if(groups.begin(), groups.end(),
-                              [&](const auto& group) { return group.first == option.group; });
+                              [&](const auto& named) { return named.first == option.group; });
     if (group == groups.end()) {
       group = groups.insert(group, {option.group, ".PP\n" + italic(option.group) + "\n"});
     }

@@ -104,15 +104,15 @@ void addSizes(const DiscoverFindings& f, ordered_json& effects) {
     effects[i]["share_of_muscle_moment"] = orNull(size.moment.share);
     effects[i]["motion_rms" + axis.end()] = orNull(axis.scale * size.motionRms);
     if (f.wording.axes.size() == 1 || size.moments.empty()) continue;
-    for (const ShownAxis& axis : f.wording.axes) {
-      const bio::discover::EffectMoment& moment = size.moments.at(axis.place);
+    for (const ShownAxis& each : f.wording.axes) {
+      const bio::discover::EffectMoment& moment = size.moments.at(each.place);
       effects[i]["moments"].push_back(
-          {{"coordinate", axis.name},
+          {{"coordinate", each.name},
            {"rms", orNull(moment.rms)},
            {"peak", orNull(moment.peak)},
            {"share_of_muscle_moment", orNull(moment.share)},
-           {"unit", axis.forceUnit},
-           {"motion_rms" + axis.end(), orNull(axis.scale * moment.motionRms)}});
+           {"unit", each.forceUnit},
+           {"motion_rms" + each.end(), orNull(each.scale * moment.motionRms)}});
     }
   }
 }

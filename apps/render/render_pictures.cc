@@ -70,8 +70,9 @@ std::vector<std::vector<double>> tubeRadii(const std::vector<std::string>& muscl
   return radii;
 }
 
-Report reportOn(const RenderOptions& options, const MovingSystem& arm, const std::string& verdict) {
-  const view::SystemMotion& motion = arm.motion();
+Report reportOn(const RenderOptions& options, const MovingSystem& system,
+                const std::string& verdict) {
+  const view::SystemMotion& motion = system.motion();
   Report report;
   report.title = fmt::format("{} on {}", options.states, options.model);
   report.verdict = verdict;
@@ -83,7 +84,7 @@ Report reportOn(const RenderOptions& options, const MovingSystem& arm, const std
     shown.series.push_back({.name = muscle, .x = times, .y = {values.begin(), values.end()}});
   }
   if (!shown.series.empty()) report.details.push_back(shown);
-  for (const bio::Coordinate& coordinate : arm.poser().skeleton().coordinates()) {
+  for (const bio::Coordinate& coordinate : system.poser().skeleton().coordinates()) {
     const auto found = motion.coordinates.find(coordinate.name);
     if (found == motion.coordinates.end()) continue;
     const double unit = coordinate.isRotation ? 180 / std::numbers::pi : 1e3;
@@ -121,7 +122,7 @@ bio::SystemOptions ghostOptions(const bio::Model& model, const SimulationOptions
 /// All that is to be drawn.
 struct Shown {
   Eigen::VectorXd times;                   ///< [s]
-  std::optional<MovingSystem> arm;         ///< never empty once read
+  std::optional<MovingSystem> system;      ///< never empty once read
   std::vector<std::vector<double>> radii;  ///< of its muscles, by moment [m]
   bool thicknessIsForce = false;
   std::optional<MovingSystem> ghost;

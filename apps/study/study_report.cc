@@ -39,9 +39,9 @@ std::string fell(const StudyFindings& f, const char* before, const char* after, 
 }
 
 std::string listed(const std::map<std::string, int>& counts) {
-  std::vector<std::string> parts;
-  for (const auto& [name, count] : counts) parts.push_back(fmt::format("{} {}", count, name));
-  return fmt::format("{}", fmt::join(parts, ", "));
+  std::vector<std::string> named;
+  for (const auto& [name, count] : counts) named.push_back(fmt::format("{} {}", count, name));
+  return fmt::format("{}", fmt::join(named, ", "));
 }
 
 std::string verdictOf(const StudyFindings& f) {
