@@ -39,9 +39,9 @@ OnReducedElbow verdictOnReducedElbow(const reduced::Plan& plan, bool leaveOut) {
   const info::discover::Verdict verdict = info::discover::run(elbow, options);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   app::DiscoverWording wording;
-  wording.outputs = {{"elbow", "deg", app::radian}};
-  wording.axes = {{"elbow", "deg", app::radian, "angle", "Torque [N·m]", "N·m"}};
-  wording.unit = app::radian;
+  wording.outputs = {{"elbow", "deg", app::degreesPerRadian}};
+  wording.axes = {{"elbow", "deg", app::degreesPerRadian, "angle", "Torque [N·m]", "N·m"}};
+  wording.unit = app::degreesPerRadian;
   wording.gapEnd = "_deg";
   wording.inputs = "muscles";
   const std::string name = plan.suite + " " + std::to_string(plan.seed);

@@ -129,7 +129,8 @@ TEST(TwoElbows, HaveTheSameLengthsAndMomentArms) {
   const bio::fixtures::ShippedElbow theirs;
   const TrueElbow elbow(readElbow(theirs.root() + "/models/elbow8.osim"), {}, {});
   const Eigen::VectorXd angles = Eigen::VectorXd::LinSpaced(261, 0, 130 * degree);
-  const bio::PathSample sample = bio::samplePaths(theirs.model, theirs.arm.skeleton(), {}, angles);
+  const bio::PathSample sample =
+      bio::samplePaths(theirs.model, theirs.system.skeleton(), {}, angles);
   ASSERT_EQ(sample.muscles.size(), 8u);
   for (Eigen::Index i = 0; i < 8; ++i) {
     EXPECT_EQ(sample.muscles[static_cast<std::size_t>(i)],

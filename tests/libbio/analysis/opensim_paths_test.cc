@@ -101,8 +101,8 @@ TEST(OpenSimPaths, OverALyingEllipsoidAreLonger) {
              lengths.along(0).length;
     };
     EXPECT_NEAR(one.length, difference(one.lengthAt), 1e-9);
-    const double slope = (difference(one.systemAt + 1e-4) - difference(one.systemAt - 1e-4)) / 2e-4;
-    EXPECT_NEAR(one.system, -slope, 1e-4);
+    const double slope = (difference(one.armAt + 1e-4) - difference(one.armAt - 1e-4)) / 2e-4;
+    EXPECT_NEAR(one.arm, -slope, 1e-4);
     EXPECT_THAT(describe(one), testing::HasSubstr(one.muscle + " over TRI differs from the taut"));
   }
 }

@@ -94,7 +94,7 @@ TEST(MuscleParameters, CurveScalesAgreeWithScaledCurves) {
 
 TEST(MuscleParameters, AStrongerMuscleIsNoFaster) {
   const fixtures::ShippedElbow elbow;
-  const SchutteMuscle<double>& muscle = elbow.arm.muscles()[6].muscle.schutte();
+  const SchutteMuscle<double>& muscle = elbow.system.muscles()[6].muscle.schutte();
   const double l = 0.95 * muscle.quantities().optimalFibreLength;
   const double L = lengthAt(muscle, points[0]);
   const auto d = fibreParameterDerivatives(muscle, 0.3, l, L);
@@ -143,8 +143,8 @@ TEST(MuscleParameters, AFibreAtRestFollowsWhatHoldsIt) {
 TEST(MuscleParameters, AFibreBesideASlackTendonFollowsItsLength) {
   // so short that neither pulls
   const fixtures::ShippedElbow elbow;
-  const SchutteMuscle<double>& muscle = elbow.arm.muscles()[3].muscle.schutte();
-  ASSERT_EQ(elbow.arm.muscles()[3].name, "ANC");
+  const SchutteMuscle<double>& muscle = elbow.system.muscles()[3].muscle.schutte();
+  ASSERT_EQ(elbow.system.muscles()[3].name, "ANC");
   const auto restAt = [&](double L) { return staticEquilibrium(muscle, 0.01, L); };
   const SchutteQuantities<double>& p = muscle.quantities();
   const double L = p.tendonSlackLength + 0.297 * p.optimalFibreLength;

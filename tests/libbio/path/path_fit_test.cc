@@ -40,7 +40,7 @@ TEST(PathFit, FindsAPolynomialOfItsOrder) {
   const PathFit fit = fitPolynomial(latticeOf(f, 12, 0), latticeOf(f, 7, 0.4), {1e-9, 9});
   EXPECT_TRUE(fit.meetsTolerance);
   EXPECT_LT(fit.length.largest, 1e-14);
-  EXPECT_LT(fit.system.largest, 1e-13);
+  EXPECT_LT(fit.arm.largest, 1e-13);
   const auto& found = std::get<MultivariatePolynomial>(fit.function.length);
   EXPECT_EQ(found.order, 3);
   ASSERT_EQ(found.coefficients.size(), truth.coefficients.size());
@@ -68,7 +68,7 @@ TEST(PathFit, TakesTheLeastOrderThatIsEnough) {
   lengthsOnly.slope.resize(0, 0);
   const PathFit without = fitPolynomial(lengthsOnly, {}, {1e-6, 9});
   EXPECT_TRUE(without.meetsTolerance);
-  EXPECT_TRUE(std::isnan(without.system.rms));
+  EXPECT_TRUE(std::isnan(without.arm.rms));
 }
 
 TEST(PathFit, RefusesWhatItCannotFit) {

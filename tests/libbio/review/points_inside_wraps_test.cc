@@ -16,7 +16,7 @@ using testing::IsEmpty;
 
 /// Upper arm, ulna and radius, and a wrap object of each shape at the humerus' origin, whose centre
 /// the default posture places at (0.1, 0.5, 0) in the ground.
-Model systemWith(WrapShape shape) {
+Model armWith(WrapShape shape) {
   Model model = fixtures::system();
   WrapObject object;
   object.name = "object";
