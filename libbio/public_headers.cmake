@@ -33,6 +33,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/design/dynamometer_plan.h
   include/bio/design/dynamometer_question.h
   include/bio/design/experiment_design.h
+  include/bio/design/input_search.h
   include/bio/design/separating_design.h
   include/bio/discovery/add_effects.h
   include/bio/discovery/effect_names.h

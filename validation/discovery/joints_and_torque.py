@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Blind sets for discover on two free joints, and on a dynamometer that reads a torque.
 
-    /usr/bin/python3 validation/discovery/joints_and_torque.py [--build build/program] [--sets 3] [--seed S] [--world joints|torque] [--seconds 4.5] FOLDER
+    python3 validation/discovery/joints_and_torque.py [--build build/program] [--sets 3] [--seed S] [--world joints|torque] [--seconds 4.5] FOLDER
 
 Each set has a training and a held-out trial of 4.5 s (--seconds) at 100 Hz, simulated by `replay` of the shipped elbow with one effect hidden in it, drawn at
 random: damping of the elbow (or of the shoulder, where that is free), a mass in the hand, an electromechanical delay, or nothing. "joints": shoulder and
@@ -10,13 +10,13 @@ discover sees the files only; the truths are written to FOLDER/truths.json and r
 Without --seed the sets are new ones. Exit status 1: a wrong name.
 """
 import argparse
+import bisect
 import json
-import os
+import math
 import pathlib
+import random
 import subprocess
 import sys
-
-import numpy as np
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 MODEL = TOP / "models/elbow8.osim"
@@ -28,11 +28,22 @@ NAMES = {"payload": {"payload", "mass"}, "delay": {"delay", "clock"}}
 def table(path):
     lines = path.read_text().splitlines()
     begin = [k for k, line in enumerate(lines) if line.strip() == "endheader"][0] + 1
-    return lines[begin].split("\t"), np.array([[float(x) for x in line.split("\t")] for line in lines[begin + 1:] if line.strip()])
+    rows = [[float(x) for x in line.split("\t")] for line in lines[begin + 1:] if line.strip()]
+    return lines[begin].split("\t"), list(zip(*rows))
 
 
-def write(path, columns, rows):
-    path.write_text(",".join(columns) + "\n" + "".join(",".join(f"{x:.8g}" for x in row) + "\n" for row in rows))
+def interpolated(times, from_times, values):
+    """Linear between rows, and as the first or last row outside."""
+    found = []
+    for t in times:
+        k = min(max(bisect.bisect_right(from_times, t) - 1, 0), len(from_times) - 2)
+        share = min(max((t - from_times[k]) / (from_times[k + 1] - from_times[k]), 0), 1)
+        found.append((1 - share) * values[k] + share * values[k + 1])
+    return found
+
+
+def write(path, names, columns):
+    path.write_text(",".join(names) + "\n" + "".join(",".join(f"{x:.8g}" for x in row) + "\n" for row in zip(*columns)))
 
 
 def damped(text, coordinate, viscosity):
@@ -48,19 +59,19 @@ def loaded(text, mass):
     return text[:begin] + repr(float(text[begin:end]) + mass) + text[end:]
 
 
-def hide(world, random, text):
+def hide(world, draw, text):
     """An effect by its id, its size, the model with it and the delay of the muscles [s]."""
     kinds = ["nothing", "payload", "elbow_flexion.visc", "delay"] + (["shoulder_elv.visc"] if world == "joints" else [])
-    kind = kinds[random.integers(len(kinds))]
+    kind = draw.choice(kinds)
     if kind == "nothing":
         return kind, 0.0, text, 0.0
     if kind == "payload":
-        mass = random.uniform(0.25, 0.9)
+        mass = draw.uniform(0.25, 0.9)
         return kind, mass, loaded(text, mass), 0.0
     if kind == "delay":
-        delay = random.uniform(0.03, 0.08)
+        delay = draw.uniform(0.03, 0.08)
         return kind, delay, text, delay
-    viscosity = random.uniform(0.3, 1.0)
+    viscosity = draw.uniform(0.3, 1.0)
     return kind, viscosity, damped(text, kind.split(".")[0], viscosity), 0.0
 
 
@@ -68,16 +79,16 @@ def options(world):
     return ["--prescribe", "elbow_flexion"] if world == "torque" else ["--coordinate", "elbow_flexion", "--coordinate", "shoulder_elv"]
 
 
-def make_trial(program, folder, name, world, model, delay, source, frequency, phase, seconds, random):
+def make_trial(program, folder, name, world, model, delay, source, frequency, phase, seconds, draw):
     columns, recorded = table(TOP / f"emg_data/{source}.sto")
-    muscles, time = columns[1:9], np.arange(0, seconds + 1e-4, 0.01)
-    excitation = np.array([np.interp(time, recorded[:, 0], recorded[:, k]) for k in range(1, 9)]).T
+    muscles, time = columns[1:9], [0.01 * k for k in range(round(100 * seconds) + 1)]
+    excitations = [interpolated(time, recorded[0], recorded[k]) for k in range(1, 9)]
     if world == "torque":
-        excitation = np.clip(2.5 * excitation, 0.01, 0.9)
-    driven = np.array([np.interp(time - delay, time, excitation[:, k]) for k in range(8)]).T
-    angle = 70 + 40 * np.sin(2 * np.pi * frequency * time + phase)
+        excitations = [[min(max(2.5 * u, 0.01), 0.9) for u in one] for one in excitations]
+    driven = [interpolated([t - delay for t in time], time, one) for one in excitations]
+    angle = [70 + 40 * math.sin(2 * math.pi * frequency * t + phase) for t in time]
     given = [angle] if world == "torque" else []
-    write(folder / "driven.csv", ["time", *muscles] + ["elbow_flexion_deg"] * len(given), np.column_stack([time, driven, *given]))
+    write(folder / "driven.csv", ["time", *muscles] + ["elbow_flexion_deg"] * len(given), [time, *driven, *given])
     start = [] if given else ["--initial", "elbow_flexion=30deg", "--initial", "shoulder_elv=15deg"]
     ran = subprocess.run([program, "replay", folder / model, folder / "driven.csv", "--out", folder / "replay", "--force", "--step", "0.0025",
                           *options(world), *start], capture_output=True, text=True, check=False)
@@ -85,16 +96,15 @@ def make_trial(program, folder, name, world, model, delay, source, frequency, ph
         sys.exit(ran.stderr)
     if world == "torque":
         columns, simulated = table(folder / "replay/forces.sto")
-        reaction = np.interp(time, simulated[:, 0], simulated[:, columns.index("elbow_flexion.reaction")])
-        shown, names = [angle, -reaction + 0.2 * random.standard_normal(len(time))], ["elbow_flexion_deg", "elbow_flexion.moment"]
+        reaction = interpolated(time, simulated[0], simulated[columns.index("elbow_flexion.reaction")])
+        shown, names = [angle, [draw.gauss(-r, 0.2) for r in reaction]], ["elbow_flexion_deg", "elbow_flexion.moment"]
     else:
         columns, simulated = table(folder / "replay/states.sto")
         names, shown = ["elbow_flexion_deg", "shoulder_elv_deg"], []
         for coordinate in ("elbow_flexion", "shoulder_elv"):
             place = next(k for k, column in enumerate(columns) if column.endswith(coordinate + "/value"))
-            course = np.degrees(np.interp(time, simulated[:, 0], simulated[:, place]))
-            shown.append(course + 0.3 * random.standard_normal(len(time)))
-    write(folder / f"{name}_{source}.csv", ["time", *muscles, *names], np.column_stack([time, excitation, *shown]))
+            shown.append([draw.gauss(math.degrees(q), 0.3) for q in interpolated(time, simulated[0], simulated[place])])
+    write(folder / f"{name}_{source}.csv", ["time", *muscles, *names], [time, *excitations, *shown])
 
 
 def judged(kind, verdict):
@@ -118,17 +128,17 @@ def main():
     parser.add_argument("--seconds", type=float, default=4.5)
     asked = parser.parse_args()
     program = (TOP / asked.build / "apps/fisherhill").resolve()
-    random = np.random.default_rng(asked.seed if asked.seed is not None else int.from_bytes(os.urandom(8), "little"))
+    draw = random.Random(asked.seed)
     asked.folder.mkdir(parents=True, exist_ok=True)
     truths, counts = {}, {}
     for number in range(asked.sets):
         for world in [asked.world] if asked.world else WORLDS:
             name = f"{world}{number}"
-            kind, size, text, delay = hide(world, random, MODEL.read_text())
+            kind, size, text, delay = hide(world, draw, MODEL.read_text())
             truths[name] = (kind, size)
             (asked.folder / "hidden.osim").write_text(text)
             for source, frequency, phase in (("curl_slow", 0.25, 0.0), ("curl_fast", 0.4, 1.0)):
-                make_trial(program, asked.folder, name, world, "hidden.osim", delay, source, frequency, phase, asked.seconds, random)
+                make_trial(program, asked.folder, name, world, "hidden.osim", delay, source, frequency, phase, asked.seconds, draw)
     (asked.folder / "truths.json").write_text(json.dumps(truths, indent=1))
     (asked.folder / "hidden.osim").unlink()
     for name in truths:

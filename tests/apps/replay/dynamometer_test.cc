@@ -241,7 +241,7 @@ TEST(Dynamometer, WhatCannotFollowTheModelsFunctionSaysSo) {
           "no trial measures the moment of one that is prescribed");
   refused({"design", known, trial, "--parameters", "TA.max_isometric_force", "--out",
            (scratch / "e").string()},
-          "the model prescribes the motion of 'ankle_angle'");
+          "no coordinate is free to be observed");
   const std::string unknown =
       prescribingModel(scratch, "<GCVSpline><x>0 1 2</x><y>0 0 0</y></GCVSpline>", "unknown.osim");
   refused({"replay", unknown, trial, "--out", (scratch / "r").string()},
