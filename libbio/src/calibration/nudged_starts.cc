@@ -28,9 +28,10 @@ std::vector<VectorXd> ledStarts(const TrialSet& trials, const ChannelNoise& chan
                                 const std::vector<VectorXd>& starts, double sd,
                                 const info::EstimateOptions& estimate) {
   const auto& series = trials.series();
-  const bool canHold = std::any_of(series.begin(), series.end(), [](const MeasuredSeries& series) {
-    return series.what.isCoordinate() && series.times.size() >= 4;
-  });
+  const bool canHold =
+      std::any_of(series.begin(), series.end(), [](const MeasuredSeries& measured) {
+        return measured.what.isCoordinate() && measured.times.size() >= 4;
+      });
   if (!canHold) return {};
   std::vector<VectorXd> led = starts;
   info::EstimateOptions options = estimate;

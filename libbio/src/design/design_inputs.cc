@@ -46,8 +46,8 @@ std::vector<CoordinateLimits> torqued(const MusculoskeletalSystem& system,
                                       const DesignLimits& limits) {
   std::vector<CoordinateLimits> torques;
   const auto& all = limits.coordinates;
-  for (const CoordinateLimits& limits : all) {
-    const std::string& name = limits.coordinate;
+  for (const CoordinateLimits& own : all) {
+    const std::string& name = own.coordinate;
     const int index = system.skeleton().indexOf(name);
     require(index >= 0 && !system.isPrescribed(index),
             fmt::format("limits of '{}': must be a free coordinate", name));
@@ -55,13 +55,12 @@ std::vector<CoordinateLimits> torqued(const MusculoskeletalSystem& system,
         std::count_if(all.begin(), all.end(),
                       [&](const CoordinateLimits& other) { return other.coordinate == name; }) == 1,
         fmt::format("limits of '{}' are given twice, must be given once", name));
-    require(limits.torque >= 0 && std::isfinite(limits.torque),
-            fmt::format("largest torque on '{}' = {}, must be ≥ 0", name, limits.torque));
-    require(limits.lower < limits.upper,
-            fmt::format("range of '{}': {} to {}, must rise", name, limits.lower, limits.upper));
-    require(limits.speed > 0,
-            fmt::format("largest speed of '{}' = {}, must be > 0", name, limits.speed));
-    if (limits.torque > 0) torques.push_back(limits);
+    require(own.torque >= 0 && std::isfinite(own.torque),
+            fmt::format("largest torque on '{}' = {}, must be ≥ 0", name, own.torque));
+    require(own.lower < own.upper,
+            fmt::format("range of '{}': {} to {}, must rise", name, own.lower, own.upper));
+    require(own.speed > 0, fmt::format("largest speed of '{}' = {}, must be > 0", name, own.speed));
+    if (own.torque > 0) torques.push_back(own);
   }
   return torques;
 }

@@ -66,8 +66,8 @@ Augmented augmentedModel(const EncompassingModel& encompassing, const Eigen::Vec
   dropAbsent(model.limitForces, encompassing.base().limitForces.size());
   dropAbsent(model.expressionForces, encompassing.base().expressionForces.size());
   for (const auto& [muscle, proxies] : encompassing.proxies()) {
-    const auto works = [&, name = &muscle](const Muscle& muscle) {
-      return muscle.name == *name && muscle.enabled;
+    const auto works = [&, name = &muscle](const Muscle& added) {
+      return added.name == *name && added.enabled;
     };
     if (std::any_of(model.muscles.begin(), model.muscles.end(), works))
       result.muscles.push_back(muscle);

@@ -37,8 +37,8 @@ double* numberNamed(Parameters& p, std::string_view name) {
   for (const SameNumber& names : sameNumbers) {
     bool isOne = false;
     for (const std::string_view one : names) isOne = isOne || one == name;
-    for (const std::string_view name : names) {
-      if (isOne && i == Parameters::count) i = place(name);
+    for (const std::string_view same : names) {
+      if (isOne && i == Parameters::count) i = place(same);
     }
   }
   return i == Parameters::count ? nullptr : &Parameters::at(p, i);

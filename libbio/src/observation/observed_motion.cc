@@ -83,10 +83,10 @@ void pennationAt(const SimulatedMuscle& muscle, std::size_t place,
 ObservedMotion::ObservedMotion(const MusculoskeletalSystem& system,
                                std::vector<ObservedSeries> series)
     : system_(&system), series_(std::move(series)) {
-  for (const ObservedSeries& series : series_) {
-    sources_.push_back(sourceOf(system, series.what));
-    size_ += series.times.size();
-    const Kind kind = series.what.kind;
+  for (const ObservedSeries& observed : series_) {
+    sources_.push_back(sourceOf(system, observed.what));
+    size_ += observed.times.size();
+    const Kind kind = observed.what.kind;
     needsReactions_ = needsReactions_ || kind == Kind::moment;
     needsMuscles_ = needsMuscles_ || kind == Kind::fibreLength || kind == Kind::pennation ||
                     kind == Kind::tendonForce || kind == Kind::activation;

@@ -46,10 +46,10 @@ TrialPredictor::TrialPredictor(const ParameterCatalogue& catalogue, const System
       options.integrator != Integrator::variationalLeft) {
     throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
-  for (const ObservedSeries& series : series_) {
-    size_ += series.times.size();
+  for (const ObservedSeries& observed : series_) {
+    size_ += observed.times.size();
     double last = -std::numeric_limits<double>::infinity();
-    for (const double t : series.times) {
+    for (const double t : observed.times) {
       const bool inside = t >= options.startTime - 1e-9 &&
                           t <= options.startTime + options.duration + 1e-9 && t > last;
       if (!inside) {

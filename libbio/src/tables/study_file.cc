@@ -93,7 +93,7 @@ StudyFile readStudy(const std::string& file) {
   std::vector<TomlTable> subjects = table.tables("subject");
   table.finish();
   (void)table.required("subject", subjects.empty() ? std::optional<int>() : std::optional<int>(1));
-  for (TomlTable& table : subjects) study.subjects.push_back(reader.read(table));
+  for (TomlTable& subject : subjects) study.subjects.push_back(reader.read(subject));
   if (!study.discover) {
     (void)table.required("parameters",
                          study.parameters.empty() ? std::optional<int>() : std::optional<int>(1));
