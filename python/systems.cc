@@ -166,8 +166,7 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
   });
   if (strict && left) throw std::runtime_error(left->what);
   std::vector<std::string> coordinates, names;
-  for (const auto& coordinate : system->skeleton().coordinates())
-    coordinates.push_back(coordinate.name);
+  for (const auto& free : system->skeleton().coordinates()) coordinates.push_back(free.name);
   for (const auto& muscle : system->muscles()) names.push_back(muscle.name);
   return results(
       "time"_a = py::array_t<double>(py::cast(motion.time)), "coordinates"_a = coordinates,
