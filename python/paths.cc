@@ -64,7 +64,7 @@ py::object fitOf(const bio::MuscleFit& fit) {
     coordinates = fit.fit->function.coordinates;
     order = py::cast(std::get<bio::MultivariatePolynomial>(fit.fit->function.length).order);
     error = py::cast(fit.fit->length.largest);
-    armError = py::cast(fit.fit->system.largest);
+    armError = py::cast(fit.fit->arm.largest);
   }
   return results("written"_a = fit.whyNot.empty(), "why_not"_a = fit.whyNot,
                  "coordinates"_a = coordinates, "order"_a = order, "length_error"_a = error,

@@ -40,7 +40,7 @@ py::list lengthJumps(const bio::Model& model) {
   for (const bio::LengthJump& jump : jumps) {
     list.append(results("muscle"_a = jump.muscle, "coordinate"_a = jump.coordinate,
                         "value"_a = jump.value, "length"_a = jump.size,
-                        "moment_arm"_a = jump.system, "conditional"_a = jump.conditional,
+                        "moment_arm"_a = jump.arm, "conditional"_a = jump.conditional,
                         "text"_a = bio::describe(jump)));
   }
   return list;
@@ -56,8 +56,8 @@ py::list openSimDifferences(const bio::Model& model) {
     for (const auto& jump : difference.jumps) jumps.emplace_back(jump.at, jump.size);
     list.append(results("muscle"_a = difference.muscle, "coordinate"_a = difference.coordinate,
                         "ellipsoids"_a = difference.ellipsoids, "length"_a = difference.length,
-                        "length_at"_a = difference.lengthAt, "moment_arm"_a = difference.system,
-                        "moment_arm_at"_a = difference.systemAt, "apart"_a = apart,
+                        "length_at"_a = difference.lengthAt, "moment_arm"_a = difference.arm,
+                        "moment_arm_at"_a = difference.armAt, "apart"_a = apart,
                         "jumps"_a = jumps, "text"_a = bio::describe(difference)));
   }
   return list;
