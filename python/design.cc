@@ -7,13 +7,13 @@
 #include <variant>
 
 #include "arguments/columns.h"
-#include "systems.h"
 #include "bio/analysis/replay.h"
 #include "bio/analysis/sensitivity_study.h"
 #include "bio/design/design_setup.h"
 #include "bio/design/separating_design.h"
 #include "docstrings.h"
 #include "interruptible.h"
+#include "systems.h"
 
 namespace python {
 namespace {
@@ -252,7 +252,7 @@ py::object separated(const bio::discover::SeparatingDesign& search,
   const bio::discover::SeparatingExperiment& e = found.after;
   const bio::Table table = bio::plannedTable(search.system(), e.trial);
   const bio::DesignInputs& inputs = search.inputs();
-  const auto ofRange = [&](double bio::discover::SeparatingExperiment::Range::*number) {
+  const auto ofRange = [&](double bio::MotionExtremes::*number) {
     return each(e.ranges, [&](const auto& range) { return range.*number; });
   };
   std::vector<double> nats;
@@ -271,9 +271,9 @@ py::object separated(const bio::discover::SeparatingDesign& search,
                  "observed"_a = namesOf(question.observed), "predicted"_a = flat(e.base),
                  "predicted_with"_a = both(flat(e.first), flat(e.second)),
                  "coordinates"_a = namesOf(inputs.limits().coordinates),
-                 "lowest"_a = ofRange(&bio::discover::SeparatingExperiment::Range::lowest),
-                 "highest"_a = ofRange(&bio::discover::SeparatingExperiment::Range::highest),
-                 "largest_speed"_a = ofRange(&bio::discover::SeparatingExperiment::Range::fastest),
+                 "lowest"_a = ofRange(&bio::MotionExtremes::lowest),
+                 "highest"_a = ofRange(&bio::MotionExtremes::highest),
+                 "largest_speed"_a = ofRange(&bio::MotionExtremes::fastest),
                  "largest_torque"_a = largestTorques(inputs, e.trial),
                  "largest_torque_rate"_a = largestTorqueRates(inputs, e.trial),
                  "largest_excitation_rate"_a = inputs.largestExcitationRate(e.trial),

@@ -17,10 +17,6 @@ namespace app {
 namespace {
 
 /// Angles are shown in degrees, everything else in its unit.
-struct ShownUnit {
-  double factor;
-  std::string name;
-};
 ShownUnit shownUnit(const bio::MeasuredGroup& channel) {
   if (channel.areAngles) return {degreesPerRadian, "deg"};
   return {1, unitText(channel.unit)};

@@ -172,8 +172,8 @@ class Compare : public Command {
     const Report report = musclesReport(findings);
     writePictures(report, folder);
     deliver(context, summary, report, folder);
-    const bool isFine = std::all_of(classes.begin(), classes.end(), [](const auto& class_) {
-      return class_.motion.outcome == bio::Outcome::completed;
+    const bool isFine = std::all_of(classes.begin(), classes.end(), [](const auto& muscles) {
+      return muscles.motion.outcome == bio::Outcome::completed;
     });
     return isFine ? ExitStatus::done : ExitStatus::answerIsNo;
   }

@@ -153,10 +153,8 @@ void tellDesign(const DesignFindings& f, Summary& summary) {
     summary.set("monte_carlo_converged", f.monteCarlo->converged);
     summary.set("monte_carlo_trials", f.monteCarlo->trials.size());
   }
-  std::vector<CoordinateMotion> motions;
-  for (const bio::MotionRange& range : f.result.after.ranges) {
-    motions.push_back({range.lowest, range.highest, range.fastest});
-  }
+  const auto& ranges = f.result.after.ranges;
+  const std::vector<bio::MotionExtremes> motions(ranges.begin(), ranges.end());
   const bio::DesignQuestion& question = f.design.question();
   tellPlan(planned(f), question.observed, question.period, motions, f.result, summary);
 }

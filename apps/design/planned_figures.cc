@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "output/angle_unit.h"
 #include "output/text.h"
 
 namespace app {
@@ -139,7 +138,7 @@ Figure searchFigure(const bio::DesignSearchRecord& record, double before, double
 }
 
 void tellPlan(const PlannedInputs& planned, const std::vector<bio::ChannelCandidate>& observed,
-              double period, const std::vector<CoordinateMotion>& motions,
+              double period, const std::vector<bio::MotionExtremes>& motions,
               const bio::DesignSearchRecord& record, Summary& summary) {
   const bio::DesignInputs& inputs = planned.inputs;
   Json outputs = Json::array(), coordinates = Json::array();

@@ -5,6 +5,7 @@
 
 #include "bio/design/input_search.h"
 #include "bio/observation/channel_information.h"
+#include "output/angle_unit.h"
 #include "output/summary.h"
 #include "report/report.h"
 
@@ -12,10 +13,6 @@
 namespace app {
 
 /// Angles are shown in degrees, everything else in its unit.
-struct ShownUnit {
-  double factor;
-  std::string name;
-};
 ShownUnit shownUnit(const std::string& unit);
 
 /// A search for inputs of an experiment.
@@ -47,13 +44,10 @@ void addLimit(Table& table, const std::string& quantity, double designed, double
 Figure searchFigure(const bio::DesignSearchRecord& record, double before, double sign,
                     const std::string& yLabel);
 
-/// The extremes of a free coordinate's planned motion.
-struct CoordinateMotion {
-  double lowest, highest, fastest;  ///< [rad] or [m]
-};
 /// The summary of every search: what is observed, and where the free coordinates go.
+/// @param motions  of DesignLimits::coordinates
 void tellPlan(const PlannedInputs& planned, const std::vector<bio::ChannelCandidate>& observed,
-              double period, const std::vector<CoordinateMotion>& motions,
+              double period, const std::vector<bio::MotionExtremes>& motions,
               const bio::DesignSearchRecord& record, Summary& summary);
 
 /// "one sample of elbow_flexion (noise 0.5 deg) and … every 0.01 s"

@@ -97,7 +97,7 @@ class Writing {
     const auto& all = f_.design.inputs().limits().coordinates;
     for (std::size_t i = 0; i < all.size(); ++i) {
       const std::string& name = all[i].coordinate;
-      const SeparatingExperiment::Range& range = f_.result.after.ranges[i];
+      const bio::MotionExtremes& range = f_.result.after.ranges[i];
       const ShownUnit unit = planned().unitOf(name);
       addLimit(table, "lowest " + name, range.lowest, all[i].lower, unit);
       addLimit(table, "highest " + name, range.highest, all[i].upper, unit);
@@ -130,11 +130,7 @@ void tellSeparation(const SeparatingFindings& f, Summary& summary) {
   summary.set("nats_after", both(after.firstOverSecond, after.secondOverFirst));
   summary.set("bound_before", both(before.firstDeviation, before.secondDeviation));
   summary.set("bound_after", both(after.firstDeviation, after.secondDeviation));
-  std::vector<CoordinateMotion> motions;
-  for (const SeparatingExperiment::Range& range : f.result.after.ranges) {
-    motions.push_back({range.lowest, range.highest, range.fastest});
-  }
-  tellPlan(Writing(f).planned(), q.observed, q.period, motions, f.result, summary);
+  tellPlan(Writing(f).planned(), q.observed, q.period, f.result.after.ranges, f.result, summary);
 }
 
 Report separatingReport(const SeparatingFindings& f) {

@@ -14,10 +14,6 @@ namespace app {
 namespace {
 
 /// Angles are shown in degrees, positions in mm.
-struct ShownUnit {
-  double factor;
-  std::string name;
-};
 ShownUnit unitOf(const bio::Coordinate& coordinate) {
   return coordinate.isRotation ? ShownUnit{degreesPerRadian, "deg"} : ShownUnit{1e3, "mm"};
 }

@@ -145,14 +145,13 @@ info::MonteCarloResult simulatedRepetitions(const ExperimentDesign& design,
         "repetitions of an experiment with nuisance parameters: must have "
         "none");
   }
-  simulation.externalForce = externalForceOf(experiment.trial, design.system());
-  simulation.prescribed = prescribedMotionOf(experiment.trial, design.system());
+  RecordedTrial planned = recordedTrial(experiment.trial, design.system(), std::move(simulation));
   std::vector<ObservedSeries> series;
   for (const ChannelCandidate& candidate : q.observed) {
     series.push_back({candidate.what, experiment.measuredTimes});
   }
-  const TrialPredictor predictor(catalogue, built, excitationOf(experiment.trial, design.system()),
-                                 std::move(series), q.parameters, simulation);
+  const TrialPredictor predictor(catalogue, built, std::move(planned.excitation), std::move(series),
+                                 q.parameters, planned.simulation);
   // in units that give all samples the noise of the first observable
   const double noise = q.observed.front().sd;
   Eigen::VectorXd units(predictor.size());

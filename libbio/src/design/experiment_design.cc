@@ -213,8 +213,9 @@ std::vector<MotionRange> ExperimentDesign::rangesOf(const SensitivityTrajectory&
     const int c = system_->skeleton().indexOf(limits.coordinate);
     const VectorXd q = s.motion.q.row(c).transpose();
     const VectorXd surprise = surpriseOf(s.q[static_cast<std::size_t>(c)]);
-    ranges.push_back({q.minCoeff(), q.maxCoeff(), (q - surprise).minCoeff(),
-                      (q + surprise).maxCoeff(), s.motion.qDot.row(c).cwiseAbs().maxCoeff()});
+    ranges.push_back({{q.minCoeff(), q.maxCoeff(), s.motion.qDot.row(c).cwiseAbs().maxCoeff()},
+                      (q - surprise).minCoeff(),
+                      (q + surprise).maxCoeff()});
   }
   return ranges;
 }

@@ -63,18 +63,18 @@ MusculoskeletalProblemOptions planning(MusculoskeletalProblemOptions options,
 /// All that is free to move; where nothing is, what is prescribed and has its moment observed.
 std::vector<std::string> inQuestion(const MusculoskeletalSystem& system,
                                     const std::vector<ChannelCandidate>& observed) {
-  std::vector<std::string> free;
+  std::vector<std::string> free, held;
   for (std::size_t i = 0; i < system.skeleton().coordinates().size(); ++i) {
     if (!system.isPrescribed(static_cast<int>(i))) {
       free.push_back(system.skeleton().coordinates()[i].name);
     }
   }
-  if (!free.empty()) return free;
   for (const ChannelCandidate& candidate : observed) {
-    if (candidate.what.kind == Observable::Kind::moment) free.push_back(candidate.what.of);
+    if (candidate.what.kind == Observable::Kind::moment) held.push_back(candidate.what.of);
   }
-  require(!free.empty(), "no coordinate is free, and no moment is observed: must have either");
-  return free;
+  std::vector<std::string> names = coordinatesInQuestion(free, held, {});
+  require(!names.empty(), "no coordinate is free, and no moment is observed: must have either");
+  return names;
 }
 
 info::discover::Whitening noiseOf(const std::vector<ChannelCandidate>& observed) {
@@ -165,7 +165,7 @@ SeparatingExperiment SeparatingDesign::at(const VectorXd& x) const {
     q << e.base.col(placeOf(limits.coordinate)), e.first.col(placeOf(limits.coordinate)),
         e.second.col(placeOf(limits.coordinate));
     const Index steps = q.rows() - 1;
-    const SeparatingExperiment::Range range{
+    const MotionExtremes range{
         q.minCoeff(), q.maxCoeff(),
         (q.bottomRows(steps) - q.topRows(steps)).cwiseAbs().maxCoeff() / question_.period};
     e.keepsLimits = e.keepsLimits && range.lowest >= limits.lower &&

@@ -134,7 +134,7 @@ SensedMotion::Sensed SensedMotion::sensedLate(const Trajectory& motion) const {
     const info::LinearWeights w = info::linearAt(time, times[i]);
     const auto k = static_cast<std::size_t>(w.row);
     at.value[i] = w.value(x);
-    at.rate[i] = (x(w.row + 1) - x(w.row)) / (time[k + 1] - time[k]);
+    at.rate[i] = x.size() > 1 ? (x(w.row + 1) - x(w.row)) / (time[k + 1] - time[k]) : missing;
     at.inLag[i] = w.value(inLag);
   }
   return at;

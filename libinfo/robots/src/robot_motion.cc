@@ -127,7 +127,7 @@ template <class System, class Make>
 System systemAt(const std::vector<Vector2d>& theta, const Make& make) {
   if (theta.size() == 1) return make(theta.front());
   std::vector<System> all;
-  for (const Vector2d& vector2d : theta) all.push_back(make(vector2d));
+  for (const Vector2d& values : theta) all.push_back(make(values));
   return stack(std::move(all));
 }
 

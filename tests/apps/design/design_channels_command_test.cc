@@ -7,37 +7,17 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "apps/design/design_command.h"
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
 
 namespace {
 
+using designing::design;
+using designing::designSummary;
 using support::ProgramResult;
 using support::ScratchFolder;
 using testing::HasSubstr;
-
-nlohmann::json designSummary(const std::string& folder) {
-  std::ifstream file(folder + "/summary.json");
-  return nlohmann::json::parse(file);
-}
-
-ProgramResult design(const std::string& folder, std::vector<std::string> more = {}) {
-  std::vector<std::string> arguments = {"design",
-                                        "models/elbow8.osim",
-                                        "emg_data/cocontraction.sto",
-                                        "--parameters",
-                                        "TRI.radius",
-                                        "--candidates",
-                                        "8",
-                                        "--generations",
-                                        "2",
-                                        "--iterations",
-                                        "0",
-                                        "--out",
-                                        folder};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return support::runFisherHill(arguments);
-}
 
 /// The bounds that `sensitivity` finds in a designed trial.
 std::map<std::string, double> boundsTold(std::vector<std::string> more) {

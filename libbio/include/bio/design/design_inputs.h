@@ -91,6 +91,12 @@ class DesignInputs {
   Trial trial_;  ///< rows: its own times, the knots, the measured times
 };
 
+/// Extremes of the planned motion of a free coordinate.
+struct MotionExtremes {
+  double lowest = 0, highest = 0;  ///< [rad] or [m]
+  double fastest = 0;              ///< |speed| [rad/s] or [m/s]
+};
+
 /// A planned experiment as a trial that can be replayed: excitations, forces from outside, the
 /// course of prescribed coordinates, experimental conditions, and what is predicted of the
 /// channels that will be measured; in radians and metres.

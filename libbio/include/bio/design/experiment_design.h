@@ -24,12 +24,9 @@ struct DesignQuestion {
   info::Optimality criterion = info::Optimality::e;  ///< a, d or e, of scaled parameters
 };
 
-/// The motion of a free coordinate [rad] or [m].
-struct MotionRange {
-  double lowest = 0, highest = 0;
-  double surprisedLowest = 0,
-         surprisedHighest = 0;  ///< with parameters off by DesignLimits::surprise
-  double fastest = 0;           ///< |speed| [rad/s] or [m/s]
+/// Extremes of a motion, and those with parameters off by DesignLimits::surprise [rad] or [m].
+struct MotionRange : MotionExtremes {
+  double surprisedLowest = 0, surprisedHighest = 0;
 };
 
 /// One experiment and its information.

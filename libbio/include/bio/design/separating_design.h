@@ -34,11 +34,8 @@ struct SeparatingExperiment {
   Trial trial;             ///< with what is predicted of the base model as measured
   Eigen::MatrixXd base, first, second;  ///< measured times × observed, in unitOf()
   info::discover::Distinction tells;
-  /// Extremes of DesignLimits::coordinates over all three motions, at the measured times.
-  struct Range {
-    double lowest, highest, fastest;
-  };
-  std::vector<Range> ranges;
+  /// Extremes of DesignLimits::coordinates, over all three motions at the measured times.
+  std::vector<MotionExtremes> ranges;
   bool keepsLimits = false;
 };
 
