@@ -7,6 +7,7 @@
 #include "bio/analysis/inverse_dynamics.h"
 #include "bio/analysis/replay.h"
 #include "bio/opensim/osim_file.h"
+#include "support/shipped_elbow.h"
 
 namespace bio::discover {
 namespace {
@@ -32,7 +33,7 @@ struct Recordings {
 
   std::filesystem::path folder = FISHERHILL_SOURCE_DIR;
   Model model = readOsim(folder / "models/elbow8.osim");
-  SystemOptions options;
+  SystemOptions options = fixtures::ShippedElbow::options();
   std::vector<Trial> trials;
 };
 
@@ -114,6 +115,7 @@ Recordings onDynamometer() {
     const RecordedTrial inputs = recordedTrial(trial, system, {});
     StartPoint start;
     start.q = startCoordinates(trial, system, {});
+    start.qDot = Eigen::VectorXd::Zero(1);
     const Trajectory motion =
         simulate(system, inputs.excitation, inputs.startAt(system, start), inputs.simulation);
     const auto n = static_cast<Index>(motion.time.size());
