@@ -120,7 +120,9 @@ class Comparison {
     result.name = std::filesystem::path(trial.file).filename().string();
     for (double t = first; t < last; t += spacing) result.times.push_back(t);
     const auto n = static_cast<Index>(result.times.size());
-    result.q = courses(prescribedMotionOf(trial, system_), result.times);
+    Trial smooth = trial;
+    smoothPrescribed(smooth, cutoff);
+    result.q = courses(prescribedMotionOf(smooth, system_), result.times);
     for (std::size_t k = 0; k < motion.size(); ++k)
       if (motion[k]) result.q.row(static_cast<Index>(k)) = onGrid(*motion[k], result.times);
     result.moment = MatrixXd::Zero(static_cast<Index>(rows_.size()), n);

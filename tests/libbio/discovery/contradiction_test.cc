@@ -112,6 +112,9 @@ Recordings onDynamometer() {
   Recordings recordings(true);
   const MusculoskeletalSystem system(recordings.model, recordings.options);
   for (Trial& trial : recordings.trials) {
+    // else the muscles make the motion, and the device has nothing to do
+    trial.excitations = (3 * trial.excitations).cwiseMin(1);
+    smoothPrescribed(trial, 3);
     const RecordedTrial inputs = recordedTrial(trial, system, {});
     StartPoint start;
     start.q = startCoordinates(trial, system, {});
