@@ -236,11 +236,14 @@ class Calibrate : public Command {
 
   /// Whether a parameter is positive by its nature, as a muscle's number, a mass or a radius is.
   static bool cannotBeNegative(const bio::ModelParameter& parameter) {
+    const bio::ParameterTarget& target = parameter.targets.front();
+    const auto* wrap = std::get_if<bio::WrapTarget>(&target);
+    const auto* body = std::get_if<bio::BodyTarget>(&target);
     return parameter.lower >= 0 &&
-           (std::holds_alternative<bio::MuscleTarget>(parameter.targets.front()) ||
-            std::holds_alternative<bio::MuscleNumberTarget>(parameter.targets.front()) ||
-            std::holds_alternative<bio::ForceNumberTarget>(parameter.targets.front()) ||
-            parameter.unit == "kg" || parameter.name.ends_with(".radius"));
+           (std::holds_alternative<bio::MuscleTarget>(target) ||
+            std::holds_alternative<bio::MuscleNumberTarget>(target) ||
+            std::holds_alternative<bio::ForceNumberTarget>(target) || (wrap && wrap->isSize()) ||
+            (body && body->quantity == bio::BodyTarget::Quantity::mass));
   }
 
   static void boundsMustBePossible(const bio::TrialSet& training,

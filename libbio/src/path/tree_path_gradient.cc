@@ -22,7 +22,7 @@ PathGradient<Eigen::Dynamic> PathGradients::workspace(const TreePath& path) cons
   PathGradient<Eigen::Dynamic> gradient;
   gradient.points.assign(numPoints_, PathGradient<Eigen::Dynamic>::OfPoint::Zero(3, columns));
   gradient.wraps.assign(numWraps_,
-                        PathGradient<Eigen::Dynamic>::OfWrap::Zero(numWrapRows, columns));
+                        PathGradient<Eigen::Dynamic>::OfWrap::Zero(wrap_rows::count, columns));
   return gradient;
 }
 

@@ -154,7 +154,7 @@ void addTendonCompliance(EncompassingModel& model) {
 void addWrapErrors(EncompassingModel& model) {
   for (const ModelParameter& parameter : model.parameters().parameters()) {
     const auto* wrap = std::get_if<WrapTarget>(&parameter.targets.front());
-    if (!wrap || wrap->component != 0) continue;
+    if (!wrap || wrap->quantity != WrapTarget::Quantity::radius) continue;
     const std::string& name = model.base().wrapObjects[wrap->wrap].name;
     const double lower = std::max(-0.5 * parameter.value, parameter.lower - parameter.value);
     const double upper = std::min(parameter.value, parameter.upper - parameter.value);
