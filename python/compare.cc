@@ -6,7 +6,6 @@
 
 #include "arguments/columns.h"
 #include "arguments/file_name.h"
-#include "systems.h"
 #include "bio/analysis/compare_muscles.h"
 #include "bio/analysis/coordinate_curve.h"
 #include "bio/analysis/replay.h"
@@ -14,6 +13,7 @@
 #include "bio/simulation/integrator_names.h"
 #include "docstrings.h"
 #include "interruptible.h"
+#include "systems.h"
 
 namespace python {
 namespace {
@@ -235,7 +235,8 @@ py::list compareMuscles(const bio::Model& model, const bio::Trial& trial,
                         const std::map<std::string, double>& lock, const std::string& integrator,
                         std::optional<double> step) {
   const SystemChoice choice = systemChoice(model, {trial}, coordinate, lock, integrator, step);
-  if (!integrator.starts_with("vi")) {
+  const auto known = bio::integratorNamed(integrator);
+  if (!known || !bio::isVariational(*known)) {
     throw std::invalid_argument(fmt::format(
         "integrator '{}', must be vi or vi-left, which have sensitivities", integrator));
   }

@@ -309,8 +309,9 @@ class Calibrate : public Command {
     std::vector<double> sds;
     for (std::size_t i = 0; i < calibration.parameters.size(); ++i) {
       const bio::CalibratedParameter& parameter = calibration.parameters[i];
-      if (parameter.ofTrial || parameter.asked.name.starts_with("emg.") || !(parameter.sd > 0))
-        continue;
+      const bool isOfModel =
+          !parameter.ofTrial && !std::holds_alternative<bio::EmgTarget>(parameter.target);
+      if (!isOfModel || !(parameter.sd > 0)) continue;
       covariance.names.push_back(parameter.asked.name);
       kept.push_back(static_cast<Eigen::Index>(i));
       sds.push_back(parameter.sd);

@@ -138,7 +138,7 @@ Table estimateTable(const CalibrateFindings& f) {
   if (!f.options.profile.empty()) table.columns.push_back("profile interval");
   if (bootstrapped) table.columns.push_back("bootstrap interval");
   for (const bio::CalibratedParameter& parameter : f.calibration.parameters) {
-    if (isKnot(parameter)) continue;
+    if (bio::isKnot(parameter.target)) continue;
     const auto& prior = parameter.asked.prior;
     std::vector<std::string> row = {
         parameter.asked.name,
@@ -171,7 +171,7 @@ VectorDrawing intervals(const CalibrateFindings& f) {
   const double z = info::normalQuantile(f.options.confidence);
   std::vector<IntervalRow> rows;
   for (const bio::CalibratedParameter& parameter : f.calibration.parameters) {
-    if (isKnot(parameter)) continue;
+    if (bio::isKnot(parameter.target)) continue;
     const auto scaled = [&](double value) { return (value - parameter.model) / parameter.priorSd; };
     IntervalRow row{.name = parameter.asked.name, .estimate = scaled(parameter.value)};
     if (const auto& prior = parameter.asked.prior) {
@@ -337,7 +337,7 @@ Report calibrateReport(const CalibrateFindings& f) {
   report.details.push_back(Section{"Estimates"});
   report.details.push_back(estimateTable(f));
   for (const bio::CalibratedParameter& parameter : c.parameters) {
-    if (!parameter.why.empty() && !isKnot(parameter))
+    if (!parameter.why.empty() && !bio::isKnot(parameter.target))
       report.details.push_back(Paragraph{parameter.why + "."});
   }
   report.details.emplace_back(intervals(f));

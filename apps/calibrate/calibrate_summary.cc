@@ -80,7 +80,7 @@ Json channelsJson(const CalibrateFindings& f) {
 Json correlationJson(const bio::Calibration& c) {
   std::vector<Eigen::Index> kept;
   for (std::size_t i = 0; i < c.parameters.size(); ++i) {
-    if (!isKnot(c.parameters[i])) kept.push_back(static_cast<Eigen::Index>(i));
+    if (!bio::isKnot(c.parameters[i].target)) kept.push_back(static_cast<Eigen::Index>(i));
   }
   Json rows = Json::array();
   for (const Eigen::Index i : kept) {
@@ -142,7 +142,7 @@ std::vector<info::discover::FittedNumber> fittedNumbers(const bio::Calibration& 
   std::vector<info::discover::FittedNumber> numbers;
   for (std::size_t i = 0; i < calibration.parameters.size(); ++i) {
     const bio::CalibratedParameter& parameter = calibration.parameters[i];
-    if (isKnot(parameter)) continue;
+    if (bio::isKnot(parameter.target)) continue;
     const auto& prior = parameter.asked.prior;
     numbers.push_back({i, parameter.asked.name, parameter.asked.unit, parameter.model,
                        parameter.value, parameter.sd, prior ? prior->sd : std::nan(""),
@@ -168,7 +168,7 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   if (!measuresOnlyAngles(f.training)) summary.set("channels", channelsJson(f));
   Json estimates = Json::object();
   for (const bio::CalibratedParameter& parameter : c.parameters) {
-    if (isKnot(parameter)) continue;  // of latent_excitations
+    if (bio::isKnot(parameter.target)) continue;  // of latent_excitations
     estimates[parameter.asked.name] = estimateJson(f, parameter);
     // of another minimum other_minima warns
     if (!parameter.why.empty() && !parameter.ofTrial && std::isnan(parameter.lower))

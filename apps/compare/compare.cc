@@ -133,7 +133,7 @@ class Compare : public Command {
     if (!integrators_.empty() || !steps_.empty() || !also_.empty()) {
       throw std::invalid_argument("--muscles excludes --integrators, --steps and --also");
     }
-    if (!simulation_.integrator.starts_with("vi")) {
+    if (!simulation_.isVariational()) {
       throw std::invalid_argument(fmt::format(
           "--integrator {}: must be vi or vi-left with --muscles", simulation_.integrator));
     }

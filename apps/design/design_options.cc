@@ -260,7 +260,7 @@ void checkDesignOptions(const DesignOptions& typed) {
   if (!isPushed && typed.excite.empty()) {
     throw std::invalid_argument("--torque 0 without --excite leaves nothing to change");
   }
-  if (!typed.simulation.integrator.starts_with("vi")) {
+  if (!typed.simulation.isVariational()) {
     throw std::invalid_argument(
         fmt::format("--integrator {}: must be vi or vi-left, which alone have sensitivities",
                     typed.simulation.integrator));

@@ -165,7 +165,7 @@ class Writer {
     }
     std::string text = fmt::format(
         "On {0} its {1} is {2} (RMS; largest {3}), which is {4} % of the muscles' net {1}.", motion,
-        axis.forceUnit == "N·m" ? "moment" : "force", withUnit(size.moment.rms, axis.forceUnit, 2),
+        axis.isTorque ? "moment" : "force", withUnit(size.moment.rms, axis.forceUnit, 2),
         withUnit(size.moment.peak, axis.forceUnit, 2), numberText(100 * size.moment.share, 2));
     if (size.motionRms > 0)  // else it is prescribed
       text += fmt::format(" Leaving it out changes the simulated motion by {} (RMS).", moved);

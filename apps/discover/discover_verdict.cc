@@ -126,7 +126,7 @@ ordered_json startJson(const DiscoverFindings& f, const bio::TrialStart& start) 
   return {{"coordinate", start.coordinate},
           {"value", orNull(start.value)},
           {"speed", orNull(start.speed)},
-          {"unit", at == axes.end() || at->unit == "deg" ? "rad" : "m"}};
+          {"unit", at == axes.end() || at->isTorque ? "rad" : "m"}};
 }
 
 ordered_json trialsJson(const DiscoverFindings& f) {
@@ -169,11 +169,8 @@ void addEffects(const DiscoverFindings& f, ordered_json& json) {
                                {"log_bayes_factor", orNull(effect.logBayesFactor)},
                                {"probability", orNull(effect.probability)}});
     for (const Estimate& estimate : effect.estimates) {
-      if (f.data.quantities()[estimate.quantity].name == candidate.id + ".time") {
-        const char* change = candidate.id.ends_with("_until") ? "ends_at_s" : "starts_at_s";
-        if (candidate.kind == info::discover::EffectKind::structure)
-          json["effects"].back()[change] = orNull(estimate.value);
-      }
+      if (const auto at = f.wording.times.find(estimate.quantity); at != f.wording.times.end())
+        json["effects"].back()[at->second] = orNull(estimate.value);
     }
     for (const std::size_t c : effect.equals) json["class"].push_back(candidates[c].id);
   }
@@ -264,12 +261,12 @@ void addUnknown(const DiscoverFindings& f, ordered_json& json) {
                        {"same_in_every_trial", orNull(verdict.unknown->tie.share)},
                        {"step_at_s", orNull(verdict.unknown->tie.stepAt)},
                        {"step_explains", orNull(verdict.unknown->tie.stepShare)}};
-    const std::string& forceUnit = f.wording.axes.at(verdict.unknown->axis).forceUnit;
-    if (forceUnit == "N·m") {
+    const ShownAxis& axis = f.wording.axes.at(verdict.unknown->axis);
+    if (axis.isTorque) {
       json["unknown"]["rms_Nm"] = orNull(verdict.unknown->forceSize);
     } else {
       json["unknown"]["rms"] = orNull(verdict.unknown->forceSize);
-      json["unknown"]["rms_unit"] = forceUnit;
+      json["unknown"]["rms_unit"] = axis.forceUnit;
     }
     addAxis(f, verdict.unknown->axis, json["unknown"]);
   }

@@ -27,6 +27,7 @@ struct ShownAxis {
   std::string position;   ///< "angle", or "position" of one that slides
   std::string force;      ///< the latent force: "Torque [N·m]"
   std::string forceUnit;  ///< "N·m"
+  bool isTorque = false;  ///< the force on it; false: a force or an acceleration
   std::size_t place = 0;  ///< in EffectSize::moments
   /// Suffix of names in verdict.json: "_deg" or "_m".
   std::string end() const { return "_" + unit; }
@@ -46,6 +47,8 @@ struct DiscoverWording {
   std::string commands;                        ///< the inputs: "excitations"
   bool hasMap = true;                          ///< false: no score map over an axis and its rate
   std::map<std::string, std::string> present;  ///< effects that the model already has, and where
+  /// Name in verdict.json of a quantity that is the time of a change: "starts_at_s", "ends_at_s".
+  std::map<std::size_t, std::string> times;
 
   bool isInNoise() const { return gapEnd == "_sd"; }
   /// ", NAME" where there are several axes.

@@ -47,6 +47,7 @@ DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data,
         at.coordinate.isRotation
             ? ShownAxis{at.coordinate.name, "deg", degreesPerRadian, "angle", "Torque [N·m]", "N·m"}
             : ShownAxis{at.coordinate.name, "m", 1, "position", "Force [N]", "N"});
+    wording.axes.back().isTorque = at.coordinate.isRotation;
     wording.axes.back().place = static_cast<std::size_t>(at.index);
   }
   const ShownOutput& first = wording.outputs.front();
@@ -60,6 +61,8 @@ DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data,
   wording.input = "muscle";
   wording.commands = "excitations";
   wording.present = model.present();
+  for (const bio::discover::TimedForce& force : model.timedForces())
+    wording.times[force.time] = force.ends ? "ends_at_s" : "starts_at_s";
   return wording;
 }
 

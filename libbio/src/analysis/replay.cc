@@ -144,9 +144,8 @@ TrialBeginning beginningOf(const Trial& trial, const Model& model,
 
 double stepOf(const Model& model, Integrator integrator, const std::optional<double>& given) {
   if (given) return *given;
-  const bool isVariational =
-      integrator == Integrator::variational || integrator == Integrator::variationalLeft;
-  return isVariational && model.fitted.step ? *model.fitted.step : defaultStep(integrator);
+  return isVariational(integrator) && model.fitted.step ? *model.fitted.step
+                                                        : defaultStep(integrator);
 }
 
 std::vector<double> observedTimes(const Trial& trial, const std::string& coordinate, double step) {
@@ -232,9 +231,9 @@ TrialReplay replayTrial(const MusculoskeletalSystem& system, const Trial& trial,
   return replay;
 }
 
-std::vector<std::string> rangeRemarks(const MusculoskeletalSystem& system,
-                                      const Trajectory& trajectory) {
-  std::vector<std::string> remarks;
+std::vector<LeftRange> leftRanges(const MusculoskeletalSystem& system,
+                                  const Trajectory& trajectory) {
+  std::vector<LeftRange> left;
   for (std::size_t i = 0; i < system.skeleton().coordinates().size(); ++i) {
     const Coordinate& c = system.skeleton().coordinates()[i];
     const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
@@ -242,15 +241,18 @@ std::vector<std::string> rangeRemarks(const MusculoskeletalSystem& system,
     const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
     for (Eigen::Index k = 0; k < q.size(); ++k) {
       if (q[k] >= c.rangeMin - margin && q[k] <= c.rangeMax + margin) continue;
-      remarks.push_back(fmt::format(
-          "{0} leaves its range, {1:.4g} to {2:.4g} {3}, at {4:.3g} s and reaches {5:.4g} to "
-          "{6:.4g} {3}: the model has no passive force that prevents this",
-          c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm",
-          trajectory.time[static_cast<std::size_t>(k)], q.minCoeff() * unit, q.maxCoeff() * unit));
+      const double time = trajectory.time[static_cast<std::size_t>(k)];
+      left.push_back(
+          {time, c.name,
+           fmt::format(
+               "{0} leaves its range, {1:.4g} to {2:.4g} {3}, at {4:.3g} s and reaches {5:.4g} to "
+               "{6:.4g} {3}: the model has no passive force that prevents this",
+               c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm", time,
+               q.minCoeff() * unit, q.maxCoeff() * unit)});
       break;
     }
   }
-  return remarks;
+  return left;
 }
 
 std::optional<LeftRange> leftRange(const MusculoskeletalSystem& system,

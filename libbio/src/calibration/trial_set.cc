@@ -22,8 +22,7 @@ bool isStart(const ModelParameter& parameter) {
 }
 
 bool isLatent(const ModelParameter& parameter) {
-  const auto* emg = std::get_if<EmgTarget>(&parameter.targets.front());
-  return emg && emg->what == EmgTarget::What::latent;
+  return isKnot(parameter.targets.front());
 }
 
 EmgMapping latentMapping(const Trial& trial, const MusculoskeletalSystem& system) {
@@ -170,6 +169,8 @@ void TrialSet::collectParameters(const TrialSetOptions& options) {
     }
   }
   parameters_ = catalogue.asEstimated(selection_, false);
+  for (const std::size_t i : selection_)
+    targets_.push_back(catalogue.parameters()[i].targets.front());
   collectOwn(options);
   priorSds_.resize(static_cast<Index>(parameters_.size()));
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
@@ -188,6 +189,7 @@ void TrialSet::collectOwn(const TrialSetOptions& options) {
       if ((options.ownStart && isStart(all[k])) || isLatent(all[k])) own_[i].push_back(k);
     }
     addLatent(i, parameters_.size());
+    for (const std::size_t k : own_[i]) targets_.push_back(all[k].targets.front());
     for (info::Parameter parameter : catalogues_[i]->asEstimated(own_[i], true)) {
       if (trials_.size() > 1) parameter.name = fmt::format("trial{}.{}", i + 1, parameter.name);
       parameters_.push_back(std::move(parameter));

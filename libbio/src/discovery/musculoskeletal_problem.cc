@@ -102,8 +102,7 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
   positive(options_.latentFloor, "floor of the latent force's scale");
   positive(options_.startSd, "standard deviation of the start");
   positive(options_.speedSd, "standard deviation of the start's speed");
-  const Integrator integrator = options_.simulation.integrator;
-  if (integrator != Integrator::variational && integrator != Integrator::variationalLeft) {
+  if (!isVariational(options_.simulation.integrator)) {
     throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
   double lastStart = -HUGE_VAL, firstEnd = HUGE_VAL;

@@ -106,14 +106,10 @@ std::vector<PlannedExperiment> passiveMotions(const Trial& trial, const Encompas
   const Coordinate& coordinate = model.coordinate();
   const double span = coordinate.rangeMax - coordinate.rangeMin;
   if (!std::isfinite(span) || !(span > 0)) return planned;
-  const auto can = [&](const char* change) {
-    return std::any_of(model.quantities().begin(), model.quantities().end(),
-                       [&](const auto& quantity) { return quantity.name == change; });
-  };
   for (const double turn : {0.0, -45.0}) {
-    if (turn != 0 && !can("known.turn")) continue;
+    if (turn != 0 && !model.conditions().armTurn) continue;
     for (const double mass : {0.0, 1.0}) {
-      if (mass != 0 && !can("known.mass")) continue;
+      if (mass != 0 && !model.conditions().massInHand) continue;
       const double low = coordinate.rangeMin + 0.1 * span,
                    high = coordinate.rangeMin + (turn == 0 ? 0.65 : 0.85) * span;
       Trial changed = trial;

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct Meaning {
   Kind kind = Kind::shift;
   std::vector<Part> parts;
   std::size_t sensor = 0;  ///< of EncompassingModel::sensors(), for effects of a sensor
+  /// Index in ParameterCatalogue of the one parameter that a scale multiplies, of which a result
+  /// tells the value in place of the factor.
+  std::optional<std::size_t> parameter = {};
 };
 
 /// Muscles whose names begin with the same capitals: TRIlong, TRIlat and TRImed are TRI.
@@ -56,6 +60,13 @@ struct MovingCoordinate {
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
 
   double middle() const { return (coordinate.rangeMin + coordinate.rangeMax) / 2; }
+};
+
+/// Quantities that trials are known to have (ExperimentalConditions), where the model can have
+/// them.
+struct ConditionQuantities {
+  std::optional<std::size_t> massInHand;  ///< [kg]
+  std::optional<std::size_t> armTurn;     ///< [rad]
 };
 
 /// Names of coordinates; one name is a list of one.
@@ -129,6 +140,7 @@ class EncompassingModel {
   void extend(std::size_t quantity, Meaning::Part part) {
     meanings_.at(quantity).parts.push_back(part);
   }
+  void setConditions(const ConditionQuantities& conditions) { conditions_ = conditions; }
   void addNuisance(std::size_t quantity) { nuisances_.push_back(quantity); }
   void add(Candidate candidate) { candidates_.push_back(std::move(candidate)); }
   /// Records an effect that the base model already has, so that it is not a candidate.
@@ -156,6 +168,7 @@ class EncompassingModel {
 
   const std::vector<Quantity>& quantities() const { return quantities_; }
   const std::vector<std::size_t>& nuisances() const { return nuisances_; }
+  const ConditionQuantities& conditions() const { return conditions_; }
   const std::vector<Candidate>& candidates() const { return candidates_; }
   /// Ids of effects that the base model already has, with the elements concerned.
   const std::map<std::string, std::string>& present() const { return present_; }
@@ -174,6 +187,9 @@ class EncompassingModel {
   SensorLaw sensorAt(const Eigen::VectorXd& values, std::size_t sensor = 0) const;
   std::size_t sensorOf(std::size_t quantity) const { return meanings_[quantity].sensor; }
   const std::vector<TimedForce>& timedForces() const { return timedForces_; }
+  std::optional<std::size_t> parameterOf(std::size_t quantity) const {
+    return meanings_[quantity].parameter;
+  }
   Meaning::Kind kindOf(std::size_t quantity) const { return meanings_[quantity].kind; }
 
  private:
@@ -217,6 +233,7 @@ class EncompassingModel {
   std::map<std::string, std::string> present_;
   std::vector<Law> laws_;
   std::vector<TimedForce> timedForces_;
+  ConditionQuantities conditions_;
   std::map<std::string, std::vector<std::string>> proxies_;
 };
 

@@ -120,6 +120,12 @@ using ParameterTarget =
                  SpringForceTarget, ExpressionTarget, GravityTarget, EmgTarget, InitialTarget,
                  MuscleNumberTarget, ForceNumberTarget>;
 
+/// Whether it is a knot of a latent excitation.
+inline bool isKnot(const ParameterTarget& target) {
+  const auto* emg = std::get_if<EmgTarget>(&target);
+  return emg && emg->what == EmgTarget::What::latent;
+}
+
 /// A parameter of the model, of the relation between EMG and excitation, or of the initial state,
 /// with its name.
 struct ModelParameter {

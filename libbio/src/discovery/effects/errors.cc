@@ -50,10 +50,12 @@ void addBeyond(EncompassingModel& model, std::size_t quantity, double sd, std::s
 void addNuisances(EncompassingModel& model) {
   for (const MuscleQuantityRule& rule : rules) {
     for (const SystemMuscle& muscle : model.system().muscles()) {
+      const std::string parameter = fmt::format("{}.{}", muscle.name, rule.parameter);
+      Meaning meaning{Meaning::Kind::scale, model.numbers(parameter)};
+      meaning.parameter = model.parameters().find(parameter);
       model.addNuisance(
           model.add(factor(nuisanceName(muscle.name, rule), rule.lower, rule.upper, rule.tolerance),
-                    {Meaning::Kind::scale,
-                     model.numbers(fmt::format("{}.{}", muscle.name, rule.parameter))}));
+                    std::move(meaning)));
     }
   }
   if (!model.movedBodies().empty()) {
