@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "arguments/columns.h"
 #include "arguments/file_name.h"
 #include "bio/analysis/compare_muscles.h"
 #include "bio/analysis/coordinate_curve.h"
 #include "bio/analysis/replay.h"
+#include "bio/model/units.h"
 #include "bio/opensim/external_loads.h"
 #include "bio/simulation/integrator_names.h"
 #include "docstrings.h"
@@ -273,7 +272,7 @@ void defineComparisons(py::module_& module) {
       py::kw_only(),
       "classes"_a = std::vector<std::string>{"Schutte1993", "Thelen2003", "Millard2012",
                                              "DeGrooteFregly2016", "RigidTendon"},
-      "noise"_a = std::numbers::pi / 180, "initial"_a = std::map<std::string, double>());
+      "noise"_a = bio::radiansPerDegree, "initial"_a = std::map<std::string, double>());
 }
 
 }  // namespace python

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <variant>
 
@@ -11,14 +10,13 @@
 #include "bio/analysis/sensitivity_study.h"
 #include "bio/design/design_setup.h"
 #include "bio/design/separating_design.h"
+#include "bio/model/units.h"
 #include "docstrings.h"
 #include "interruptible.h"
 #include "systems.h"
 
 namespace python {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 /// One number for all free coordinates, or by name.
 using OneOrNamed = std::variant<double, std::map<std::string, double>>;
@@ -325,19 +323,19 @@ void defineDesign(py::module_& module) {
   defineWithChoice(module, "design", &design, docstrings::design, "model"_a, "trial"_a,
                    "parameters"_a, py::kw_only(), "nuisance"_a = List(), "priors"_a = false,
                    "prior"_a = Given(), "criterion"_a = "E", "observe"_a = Given(),
-                   "noise"_a = 0.5 * degree, "rate"_a = 100.0, "torque"_a = 10.0,
+                   "noise"_a = 0.5 * bio::radiansPerDegree, "rate"_a = 100.0, "torque"_a = 10.0,
                    "torque_rate"_a = 50.0, "excite"_a = List(), "excitation_max"_a = 0.5,
-                   "excitation_rate"_a = 2.0, "range"_a = py::none(), "speed"_a = 500 * degree,
-                   "surprise"_a = 0.5, "knots"_a = 0.3, "candidates"_a = 100, "generations"_a = 100,
-                   "iterations"_a = 10, "monte_carlo"_a = 0, "seed"_a = 1, "threads"_a = 1,
-                   "initial"_a = Given());
+                   "excitation_rate"_a = 2.0, "range"_a = py::none(),
+                   "speed"_a = 500 * bio::radiansPerDegree, "surprise"_a = 0.5, "knots"_a = 0.3,
+                   "candidates"_a = 100, "generations"_a = 100, "iterations"_a = 10,
+                   "monte_carlo"_a = 0, "seed"_a = 1, "threads"_a = 1, "initial"_a = Given());
   defineWithChoice(module, "separate", &separate, docstrings::separate, "model"_a, "trial"_a,
                    "first"_a, "second"_a, py::kw_only(), "size"_a = Given(), "observe"_a = Given(),
-                   "noise"_a = 0.5 * degree, "rate"_a = 100.0, "torque"_a = 10.0,
+                   "noise"_a = 0.5 * bio::radiansPerDegree, "rate"_a = 100.0, "torque"_a = 10.0,
                    "torque_rate"_a = 50.0, "excite"_a = List(), "excitation_max"_a = 0.5,
-                   "excitation_rate"_a = 2.0, "range"_a = py::none(), "speed"_a = 500 * degree,
-                   "knots"_a = 0.3, "candidates"_a = 100, "generations"_a = 100, "seed"_a = 1,
-                   "threads"_a = 1, "initial"_a = Given());
+                   "excitation_rate"_a = 2.0, "range"_a = py::none(),
+                   "speed"_a = 500 * bio::radiansPerDegree, "knots"_a = 0.3, "candidates"_a = 100,
+                   "generations"_a = 100, "seed"_a = 1, "threads"_a = 1, "initial"_a = Given());
 }
 
 }  // namespace python

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bio/analysis/replay.h"
+#include "bio/model/units.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/review/trial_review.h"
 #include "calibrate/calibrate_remarks.h"
@@ -18,7 +19,6 @@
 #include "options/parameter_list.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
-#include "output/angle_unit.h"
 #include "output/driven_trials.h"
 #include "output/json_text.h"
 #include "output/progress_bar.h"
@@ -217,7 +217,7 @@ class Calibrate : public Command {
     for (const NamedPair& bounds : parsePairs(bounds_, "--bounds")) {
       options.bounds[bounds.name] = {bounds.first, bounds.second};
     }
-    if (noise_) options.noise = *noise_ / degreesPerRadian;
+    if (noise_) options.noise = *noise_ / bio::degreesPerRadian;
     for (const std::string& text : channelNoise_) {
       const Assignment assignment = parseAssignment(text);
       if (!options.channelNoise.emplace(assignment.name, assignment.value).second) {
@@ -330,7 +330,7 @@ class Calibrate : public Command {
       nlohmann::ordered_json json{{"file", file}, {"role", trial.isHeldOut ? "held_out" : "train"}};
       if (trial.driven) file = writeDriven(trial, trial.index + 1, calibrated.model, folder);
       json["replay_file"] = file;
-      json["rmse_after_deg"] = orNull(trial.after * degreesPerRadian);
+      json["rmse_after_deg"] = orNull(trial.after * bio::degreesPerRadian);
       for (const bio::ChannelError& channel : trial.channels) {
         json["rms_error"][nameOf(channel.what)] = {
             {"value", channel.error.rms}, {"unit", bio::unitOf(channel.what, calibrated.model)}};

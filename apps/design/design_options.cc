@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "bio/design/design_setup.h"
+#include "bio/model/units.h"
 #include "options/observed_channels.h"
 #include "options/trial_input.h"
-#include "output/angle_unit.h"
 
 namespace app {
 namespace {
@@ -276,7 +276,7 @@ bio::DesignLimits designLimits(const DesignOptions& typed,
   given.torque = torquesOf(typed);
   for (const bio::Coordinate& coordinate : system.skeleton().coordinates()) {
     given.speed[coordinate.name] =
-        typed.speed_deg * (coordinate.isRotation ? radiansPerDegree : 1e-3);
+        typed.speed_deg * (coordinate.isRotation ? bio::radiansPerDegree : 1e-3);
   }
   for (const int prescribed : system.prescribed()) {
     given.speed.erase(system.skeleton().coordinates()[static_cast<std::size_t>(prescribed)].name);
@@ -302,7 +302,7 @@ std::vector<bio::ChannelCandidate> designOutputs(const DesignOptions& typed,
                                                  const bio::MusculoskeletalSystem& system) {
   if (!typed.observe.empty()) return readObserved(typed.observe, model, system);
   const auto observed =
-      bio::freeCoordinates(system, typed.noise_deg * radiansPerDegree, typed.noise_deg / 1000);
+      bio::freeCoordinates(system, typed.noise_deg * bio::radiansPerDegree, typed.noise_deg / 1000);
   if (!observed.empty()) return observed;
   throw std::invalid_argument(
       "no coordinate is free to be observed: --observe must name what is measured");

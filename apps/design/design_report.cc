@@ -93,7 +93,7 @@ Table limitsKept(const DesignFindings& f) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string& name = all[i].coordinate;
     const bio::MotionRange& range = f.result.after.ranges[i];
-    const ShownUnit unit = planned(f).unitOf(name);
+    const bio::ShownUnit unit = planned(f).unitOf(name);
     addLimit(table, "lowest " + name, range.lowest, all[i].lower, unit);
     addLimit(table, "the same, parameters off", range.surprisedLowest, all[i].lower, unit);
     addLimit(table, "highest " + name, range.highest, all[i].upper, unit);

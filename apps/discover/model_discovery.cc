@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "bio/discovery/workflow.h"
+#include "bio/model/units.h"
 #include "discover/discover_results.h"
 #include "discover/discover_search.h"
 #include "discover/proposed_experiments_text.h"
@@ -16,7 +17,6 @@
 #include "options/input_rules.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
-#include "output/angle_unit.h"
 #include "report/result.h"
 
 namespace app {
@@ -24,7 +24,7 @@ namespace {
 
 ShownOutput shownOf(const bio::Observable& what, const bio::Model& model) {
   const std::string unit = bio::unitOf(what, model);
-  if (unit == "rad") return {bio::nameOf(what), "deg", degreesPerRadian};
+  if (unit == "rad") return {bio::nameOf(what), "deg", bio::degreesPerRadian};
   return {bio::nameOf(what), unit, 1};
 }
 
@@ -45,7 +45,8 @@ DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data,
   for (const bio::discover::MovingCoordinate& at : model.coordinates()) {
     wording.axes.push_back(
         at.coordinate.isRotation
-            ? ShownAxis{at.coordinate.name, "deg", degreesPerRadian, "angle", "Torque [N·m]", "N·m"}
+            ? ShownAxis{at.coordinate.name, "deg", bio::degreesPerRadian, "angle", "Torque [N·m]",
+                        "N·m"}
             : ShownAxis{at.coordinate.name, "m", 1, "position", "Force [N]", "N"});
     wording.axes.back().isTorque = at.coordinate.isRotation;
     wording.axes.back().place = static_cast<std::size_t>(at.index);

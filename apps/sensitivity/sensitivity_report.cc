@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include "bio/model/units.h"
 #include "output/json_text.h"
 #include "output/text.h"
 
@@ -182,7 +182,7 @@ std::string channelWords(const SensitivityFindings& f, const bio::ChannelCandida
       (channel.what.kind == Kind::coordinate || channel.what.kind == Kind::speed) &&
       bio::findCoordinate(*f.model, channel.what.of).isRotation;
   const std::string unit = bio::unitOf(channel.what, *f.model);
-  const double factor = isAngle ? 180 / std::numbers::pi : 1;
+  const double factor = isAngle ? bio::degreesPerRadian : 1;
   return fmt::format(
       "{} ({})", bio::nameOf(channel.what),
       isAngle ? withUnit(channel.sd * factor, channel.what.kind == Kind::speed ? "deg/s" : "deg")
@@ -265,10 +265,10 @@ std::vector<std::size_t> ranking(const Eigen::VectorXd& score) {
 }
 
 double shownFactor(const bio::Coordinate& coordinate) {
-  return coordinate.isRotation ? 180 / std::numbers::pi : 1e3;
+  return bio::positionUnit(coordinate.isRotation).factor;
 }
-const char* shownUnit(const bio::Coordinate& coordinate) {
-  return coordinate.isRotation ? "deg" : "mm";
+std::string shownUnit(const bio::Coordinate& coordinate) {
+  return bio::positionUnit(coordinate.isRotation).name;
 }
 
 void tellSensitivity(const SensitivityFindings& f, Summary& summary) {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "bio/model/units.h"
 #include "bio/simulation/simulate.h"
 #include "bio/tables/table_file.h"
 #include "bio/tables/unknown_column.h"
@@ -150,7 +150,7 @@ SystemMotion readSystemMotion(const std::filesystem::path& file, const Model& mo
         if (coordinateOf(model, "", meaning.name)->isRotation &&
             (meaning.unit == Unit::degrees ||
              (meaning.unit == Unit::asHeader && table.inDegrees))) {
-          values *= std::numbers::pi / 180;
+          values *= radiansPerDegree;
         }
         motion.coordinates[meaning.name] = values;
         break;

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <functional>
-#include <numbers>
 #include <optional>
 
 #include "analysis/initial_speed.h"
+#include "bio/model/units.h"
 #include "bio/observation/observed_motion.h"
 #include "bio/simulation/integrator_names.h"
 #include "simulation/integrators.h"
@@ -236,8 +236,8 @@ std::vector<LeftRange> leftRanges(const MusculoskeletalSystem& system,
   std::vector<LeftRange> left;
   for (std::size_t i = 0; i < system.skeleton().coordinates().size(); ++i) {
     const Coordinate& c = system.skeleton().coordinates()[i];
-    const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
-    const double margin = c.isRotation ? std::numbers::pi / 180 : 1e-3;
+    const ShownUnit unit = positionUnit(c.isRotation);
+    const double margin = 1 / unit.factor;
     const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
     for (Eigen::Index k = 0; k < q.size(); ++k) {
       if (q[k] >= c.rangeMin - margin && q[k] <= c.rangeMax + margin) continue;
@@ -247,8 +247,8 @@ std::vector<LeftRange> leftRanges(const MusculoskeletalSystem& system,
            fmt::format(
                "{0} leaves its range, {1:.4g} to {2:.4g} {3}, at {4:.3g} s and reaches {5:.4g} to "
                "{6:.4g} {3}: the model has no passive force that prevents this",
-               c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm", time,
-               q.minCoeff() * unit, q.maxCoeff() * unit)});
+               c.name, c.rangeMin * unit.factor, c.rangeMax * unit.factor, unit.name, time,
+               q.minCoeff() * unit.factor, q.maxCoeff() * unit.factor)});
       break;
     }
   }
@@ -269,15 +269,15 @@ std::optional<LeftRange> leftRange(const MusculoskeletalSystem& system,
   };
   for (std::size_t i = 0; i < system.skeleton().coordinates().size(); ++i) {
     const Coordinate& c = system.skeleton().coordinates()[i];
-    const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
-    const double margin = std::max(0.1 * (c.rangeMax - c.rangeMin), 1 / unit);
+    const ShownUnit unit = positionUnit(c.isRotation);
+    const double margin = std::max(0.1 * (c.rangeMax - c.rangeMin), 1 / unit.factor);
     const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
     look(c.name, q, c.rangeMin - margin, c.rangeMax + margin, [&](double time) {
       return fmt::format(
           "{0} leaves its range, {1:.4g} to {2:.4g} {3}, by more than a tenth of it "
           "at {4:.3g} s and reaches {5:.4g} to {6:.4g} {3}",
-          c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm", time,
-          q.minCoeff() * unit, q.maxCoeff() * unit);
+          c.name, c.rangeMin * unit.factor, c.rangeMax * unit.factor, unit.name, time,
+          q.minCoeff() * unit.factor, q.maxCoeff() * unit.factor);
     });
   }
   for (std::size_t i = 0; i < system.numMuscles(); ++i) {

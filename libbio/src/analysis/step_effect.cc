@@ -4,16 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "bio/model/units.h"
 #include "simulation/motion_weights.h"
 
 namespace bio {
 namespace {
 
-double shownFactor(bool turns) {
-  return turns ? 180 / std::numbers::pi : 1e3;
-}
 double limitOf(bool turns) {
   return turns ? largestStepEffect_deg : largestStepEffect_mm;
 }
@@ -42,7 +39,7 @@ std::optional<StepEffect> stepEffect(const MusculoskeletalSystem& system, const 
       const auto w = weightsAt(motion.time, finer.time[k]);
       const double coarse = w ? w->value(motion.q.row(i), motion.qDot.row(i)) : motion.q(i, 0);
       const double difference = std::abs(coarse - finer.q(i, static_cast<Eigen::Index>(k)));
-      const double share = difference * shownFactor(turns) / limitOf(turns);
+      const double share = difference * positionUnit(turns).factor / limitOf(turns);
       if (!(share > most)) continue;
       most = share;
       isBeyond = true;

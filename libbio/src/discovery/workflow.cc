@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
+#include "bio/model/units.h"
 #include "discovery/first_part.h"
 
 namespace bio::discover {
@@ -34,9 +33,9 @@ SteppedVerdict search(const DiscoveryRequest& request, const std::vector<Trial>&
 
 std::string sentenceOf(const info::discover::PositionBreak& found, const Coordinate& coordinate,
                        bool trialsAreCut) {
-  const double unit = coordinate.isRotation ? 180 / std::numbers::pi : 1e3;
-  const std::string where = fmt::format("{} = {:.0f} {}", coordinate.name, unit * found.position,
-                                        coordinate.isRotation ? "deg" : "mm");
+  const ShownUnit unit = positionUnit(coordinate.isRotation);
+  const std::string where =
+      fmt::format("{} = {:.0f} {}", coordinate.name, unit.factor * found.position, unit.name);
   return fmt::format(
       " {} {} the model lacks a {} of {:.2g} {} at once, as where a muscle's path jumps{}",
       found.above ? "Above" : "Below", where, coordinate.isRotation ? "torque" : "force",

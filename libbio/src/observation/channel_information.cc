@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 #include <stdexcept>
+
+#include "bio/model/units.h"
 
 namespace bio {
 namespace {
 
 using Kind = Observable::Kind;
-
-constexpr double radiansPerDegree = std::numbers::pi / 180;
 
 double usualSd(Kind kind, bool turns) {
   switch (kind) {
