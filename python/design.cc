@@ -114,8 +114,8 @@ std::vector<std::string> namesOf(const std::vector<bio::CoordinateLimits>& limit
 bio::Trial readAgain(const bio::Table& table, const bio::Trial& trial, const bio::Model& model) {
   bio::TrialOptions options{.experimentalConditions = true};
   for (const bio::MeasuredChannel& course : trial.prescribed) {
-    if (course.times.size() > 1) options.prescribed.push_back(course.what.of);
-    if (course.times.size() == 1) options.held[course.what.of] = course.values[0];
+    if (course.times.size() > 1) options.prescribed.push_back(course.what.object);
+    if (course.times.size() == 1) options.held[course.what.object] = course.values[0];
   }
   return trialOf(table, "designed experiment", model, options);
 }
@@ -167,7 +167,7 @@ py::object designed(const bio::ExperimentDesign& search, const bio::DesignResult
                  "trial"_a = readAgain(table, e.trial, model), "times"_a = e.measuredTimes,
                  "observed"_a = namesOf(question.observed), "predicted"_a = flat(e.measured),
                  "predicted_before"_a = flat(found.before.measured),
-                 "surprise"_a = flat(search.surpriseAt(e)),
+                 "surprise"_a = flat(search.allowanceAt(e)),
                  "bound_over_time"_a = search.boundOverTime(e),
                  "bound_over_time_before"_a = search.boundOverTime(found.before),
                  "coordinates"_a = namesOf(limits), "lowest"_a = ofRange(&bio::MotionRange::lowest),
@@ -191,7 +191,7 @@ py::object design(const bio::Model& model, const bio::Trial& trial,
                   const OneOrNamed& torque, double torqueRate,
                   const std::vector<std::string>& excite, double excitationMax,
                   double excitationRate, const Range& range, const OneOrNamed& speed,
-                  double surprise, double knots, int candidates, int generations, int iterations,
+                  double robustness, double knots, int candidates, int generations, int iterations,
                   int monteCarlo, std::uint64_t seed, int threads,
                   const std::map<std::string, double>& initial, const Names& coordinate,
                   const std::map<std::string, double>& lock, const std::string& integrator,
@@ -218,7 +218,7 @@ py::object design(const bio::Model& model, const bio::Trial& trial,
     catalogue.emplace(model, *system, bio::StartPoint{start, {}});
     question.observed = inputs.observed(model, *system);
     bio::DesignLimits limits = inputs.limits(*system);
-    limits.surprise = surprise;
+    limits.robustness = robustness;
     const bio::SimulationOptions simulation = during(trial, choice.simulation());
     search.emplace(*system, *catalogue, catalogue->nominal(), trial, simulation,
                    bio::designQuestion(*catalogue, {parameters, nuisance, priors, prior}, question),

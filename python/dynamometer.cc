@@ -57,7 +57,7 @@ py::object designOnDynamometer(const bio::Model& model, const std::string& coord
                                const Values& speeds, const Values& efforts, const Values& releases,
                                std::optional<double> releaseSpeed, const Values& loads,
                                int experiments, double momentNoise, double noise, double rate,
-                               double speed, double surprise, int threads,
+                               double speed, double robustness, int threads,
                                const std::map<std::string, double>& lock,
                                const std::string& integrator, std::optional<double> step) {
   const bio::Coordinate& moved = bio::findCoordinate(model, coordinate);
@@ -78,7 +78,7 @@ py::object designOnDynamometer(const bio::Model& model, const std::string& coord
   question.angleNoise = noise;
   question.rate = rate;
   question.fastest = speed;
-  question.surprise = surprise;
+  question.robustness = robustness;
   question.threads = threads;
   question = bio::withDefaults(std::move(question), moved, releaseSpeed);
   bio::DynamometerPlan plan;

@@ -44,9 +44,9 @@ void tellNotFitted(const bio::TrialSet& training, const std::vector<bio::Trial>&
     for (const bio::Trial& trial : *trials) {
       for (const bio::MeasuredChannel& motion : trial.measured) {
         if (!motion.what.isCoordinate()) continue;
-        const int index = training.system().skeleton().indexOf(motion.what.of);
+        const int index = training.system().skeleton().indexOf(motion.what.object);
         if (index < 0 || !training.system().isPrescribed(index)) continue;
-        files[motion.what.of].push_back(trial.file);
+        files[motion.what.object].push_back(trial.file);
       }
     }
   }

@@ -159,7 +159,7 @@ void addPlan(CLI::App& options, DesignOptions& typed) {
       ->allow_extra_args(false);
   number("--speed", typed.speed_deg, "DEG/S",
          "largest speed of the coordinates (of a shift: in mm/s)");
-  number("--surprise", typed.limits.surprise, "K",
+  number("--surprise", typed.limits.robustness, "K",
          "respect the range even if the parameters are K prior standard deviations off");
   number("--knots", typed.knots, "SECONDS",
          "interval between the knots of the piecewise linear inputs");
@@ -245,8 +245,9 @@ void checkDesignOptions(const DesignOptions& typed) {
   positive("--excitation-rate", typed.limits.excitationRate, "1/s");
   positive("--speed", typed.speed_deg, "deg/s");
   positive("--knots", typed.knots, "s");
-  if (!(typed.limits.surprise >= 0 && std::isfinite(typed.limits.surprise))) {
-    throw std::invalid_argument(fmt::format("--surprise: {}, must be ≥ 0", typed.limits.surprise));
+  if (!(typed.limits.robustness >= 0 && std::isfinite(typed.limits.robustness))) {
+    throw std::invalid_argument(
+        fmt::format("--surprise: {}, must be ≥ 0", typed.limits.robustness));
   }
   if (!(typed.limits.largestExcitation > typed.limits.leastExcitation &&
         typed.limits.largestExcitation <= 1)) {

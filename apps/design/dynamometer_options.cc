@@ -122,7 +122,7 @@ bio::DynamometerQuestion dynamometerQuestion(const DesignOptions& typed,
   question.angleNoise = turns ? typed.noise_deg * bio::radiansPerDegree : typed.noise_deg / 1000;
   question.rate = typed.rate_Hz;
   question.fastest = turns ? typed.speed_deg * bio::radiansPerDegree : typed.speed_deg / 1000;
-  question.surprise = typed.limits.surprise;
+  question.robustness = typed.limits.robustness;
   question.positions = quantities(options.angles, turns, "--angles");
   question.speeds = quantities(options.speeds, turns, "--speeds");
   question.efforts = shares(options.efforts);

@@ -45,11 +45,11 @@ void tellDynamometer(const bio::DynamometerPlan& plan, bool turns, Summary& summ
     for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
       bounds[plan.parameters[i].name] = plan.bounds[n][static_cast<Index>(i)];
     }
-    const char* of = turns ? "_deg" : "_m";
+    const char* suffix = turns ? "_deg" : "_m";
     list.push_back({{"kind", bio::name(experiment.kind)},
-                    {fmt::format("from{}", of), experiment.from * unit},
-                    {fmt::format("to{}", of), experiment.to * unit},
-                    {fmt::format("speed{}_per_s", of), experiment.speed * unit},
+                    {fmt::format("from{}", suffix), experiment.from * unit},
+                    {fmt::format("to{}", suffix), experiment.to * unit},
+                    {fmt::format("speed{}_per_s", suffix), experiment.speed * unit},
                     {"muscles", experiment.group},
                     {"effort_percent", 100 * experiment.effort},
                     {"load_percent", 100 * experiment.load},

@@ -38,11 +38,11 @@ struct DiscoverWording {
   std::vector<ShownOutput> outputs;  ///< by DiscoveryProblem::outputOfSample
   std::vector<ShownAxis> axes;       ///< by DiscoveryProblem::axes
   double unit = 1;                   ///< factor from internal RMS errors to shown ones
-  std::string gapUnit;  ///< their unit; "sd" if there are several outputs, whose errors are in
-                        ///< standard deviations of their noise
-  std::string gapEnd;   ///< suffix of names in verdict.json: "_deg", "_m", "_N", …, or "_sd"
-  std::string ofForce;  ///< unit of the latent force's size: "fraction of the muscles' moments"
-  std::string push;     ///< disturbance that a score tests: "a push"
+  std::string errorUnit;  ///< their unit; "sd" if there are several outputs, whose errors are in
+                          ///< standard deviations of their noise
+  std::string errorEnd;   ///< suffix of names in verdict.json: "_deg", "_m", "_N", …, or "_sd"
+  std::string ofForce;    ///< unit of the latent force's size: "fraction of the muscles' moments"
+  std::string push;       ///< disturbance that a score tests: "a push"
   std::string inputs, input;                   ///< "muscles", "muscle"
   std::string commands;                        ///< the inputs: "excitations"
   bool hasMap = true;                          ///< false: no score map over an axis and its rate
@@ -50,7 +50,7 @@ struct DiscoverWording {
   /// Name in verdict.json of a quantity that is the time of a change: "starts_at_s", "ends_at_s".
   std::map<std::size_t, std::string> times;
 
-  bool isInNoise() const { return gapEnd == "_sd"; }
+  bool isInNoise() const { return errorEnd == "_sd"; }
   /// ", NAME" where there are several axes.
   std::string named(std::size_t axis) const {
     return axes.size() > 1 ? ", " + axes[axis].name : "";

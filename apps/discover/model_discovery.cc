@@ -54,8 +54,8 @@ DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data,
   const ShownOutput& first = wording.outputs.front();
   const bool isOne = wording.outputs.size() == 1;
   wording.unit = isOne ? first.scale : 1 / verdict.sds.sd(0);
-  wording.gapUnit = isOne ? first.unit : "sd";
-  wording.gapEnd = isOne ? endOf(first.unit) : "_sd";
+  wording.errorUnit = isOne ? first.unit : "sd";
+  wording.errorEnd = isOne ? endOf(first.unit) : "_sd";
   wording.ofForce = "fraction of the muscles' moments";
   wording.push = "a push";
   wording.inputs = "muscles";

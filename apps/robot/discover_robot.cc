@@ -60,8 +60,8 @@ DiscoverWording wordingOf(const RobotProblem& data) {
   wording.axes = {
       {first.name, first.unit, first.scale, "angle", "Acceleration of the cart [m/s²]", "m/s²"}};
   wording.unit = angles ? bio::degreesPerRadian : 1;
-  wording.gapUnit = first.unit;
-  wording.gapEnd = angles ? "_deg" : "_N";
+  wording.errorUnit = first.unit;
+  wording.errorEnd = angles ? "_deg" : "_N";
   wording.ofForce = "an acceleration of the cart [m/s²]";
   wording.push = "an extra acceleration of the cart";
   wording.inputs = "inputs";

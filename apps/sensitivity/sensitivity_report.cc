@@ -180,7 +180,7 @@ std::string channelWords(const SensitivityFindings& f, const bio::ChannelCandida
   using Kind = bio::Observable::Kind;
   const bool isAngle =
       (channel.what.kind == Kind::coordinate || channel.what.kind == Kind::speed) &&
-      bio::findCoordinate(*f.model, channel.what.of).isRotation;
+      bio::findCoordinate(*f.model, channel.what.object).isRotation;
   const std::string unit = bio::unitOf(channel.what, *f.model);
   const double factor = isAngle ? bio::degreesPerRadian : 1;
   return fmt::format(

@@ -42,7 +42,7 @@ OnReducedElbow verdictOnReducedElbow(const reduced::Plan& plan, bool leaveOut) {
   wording.outputs = {{"elbow", "deg", bio::degreesPerRadian}};
   wording.axes = {{"elbow", "deg", bio::degreesPerRadian, "angle", "Torque [N·m]", "N·m"}};
   wording.unit = bio::degreesPerRadian;
-  wording.gapEnd = "_deg";
+  wording.errorEnd = "_deg";
   wording.inputs = "muscles";
   const std::string name = plan.suite + " " + std::to_string(plan.seed);
   const auto fitted = info::discover::fittedNumbers(elbow, verdict);

@@ -183,10 +183,10 @@ MeasuredError errorOf(const Eigen::VectorXd& times, const Eigen::VectorXd& simul
 
 MeasuredError compareWithMeasured(const MusculoskeletalSystem& system, const Trajectory& trajectory,
                                   const MeasuredChannel& measured) {
-  const int index = system.skeleton().indexOf(measured.what.of);
+  const int index = system.skeleton().indexOf(measured.what.object);
   if (index < 0) {
     throw std::invalid_argument(
-        fmt::format("measured coordinate '{}' is not free", measured.what.of));
+        fmt::format("measured coordinate '{}' is not free", measured.what.object));
   }
   const std::vector<double>& time = trajectory.time;
   Eigen::VectorXd simulated =
@@ -201,8 +201,8 @@ MeasuredError compareWithMeasured(const MusculoskeletalSystem& system, const Tra
   const MeasuredError error = errorOf(measured.times, simulated, measured.values);
   if (error.count == 0) {
     throw std::invalid_argument(
-        fmt::format("measured coordinate '{}': no value between {} s and {} s", measured.what.of,
-                    time.front(), time.back()));
+        fmt::format("measured coordinate '{}': no value between {} s and {} s",
+                    measured.what.object, time.front(), time.back()));
   }
   return error;
 }
@@ -221,8 +221,8 @@ TrialReplay replayTrial(const MusculoskeletalSystem& system, const Trial& trial,
       replay.channelErrors.push_back(
           {measured.what,
            errorOf(measured.times, observed.values(replay.motion), measured.values)});
-    } else if (system.skeleton().indexOf(measured.what.of) >= 0) {
-      replay.errors.emplace_back(measured.what.of,
+    } else if (system.skeleton().indexOf(measured.what.object) >= 0) {
+      replay.errors.emplace_back(measured.what.object,
                                  compareWithMeasured(system, replay.motion, measured));
     }
   }

@@ -212,13 +212,13 @@ void takeReplays(Verdict& verdict, const Repaired& repaired) {
   // what a gap compares is what the sensor shows
   const std::vector<SensorLaw>& sensors = repaired.added.sensors;
   const double shown = sensors.size() == 1 ? 1 + sensors.front().gain : 1;
-  const auto take = [&](info::discover::ExcessError& gap, bool heldOut) {
-    gap.nominal = pooledRms(repaired.trials, &RepairedTrial::nominal, heldOut);
-    gap.after = shown * pooledRms(repaired.trials, &RepairedTrial::after, heldOut);
-    explainExcess(gap);
-    gap.after /= shown;
+  const auto take = [&](info::discover::ExcessError& excess, bool heldOut) {
+    excess.nominal = pooledRms(repaired.trials, &RepairedTrial::nominal, heldOut);
+    excess.after = shown * pooledRms(repaired.trials, &RepairedTrial::after, heldOut);
+    explainExcess(excess);
+    excess.after /= shown;
   };
-  take(verdict.gap, false);
+  take(verdict.excess, false);
   if (verdict.heldOut) take(*verdict.heldOut, true);
 }
 

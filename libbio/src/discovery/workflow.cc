@@ -92,14 +92,15 @@ void repair(const DiscoveryRequest& request, DiscoveryResult& result) {
   const Verdict& verdict = result.found.verdict;
   const std::vector<int>& heldOut = result.found.options.heldOut;
   if (verdict.base.size() == 0) return;  // stopped before there was a model
-  const auto repaired = [&](const MusculoskeletalProblem& data, const Verdict& of) {
-    result.repaired = repairedModel(data, of, heldOut, request.step, request.provenance);
+  const auto repaired = [&](const MusculoskeletalProblem& data, const Verdict& found) {
+    result.repaired = repairedModel(data, found, heldOut, request.step, request.provenance);
     result.trials = result.repaired->trials;
   };
-  const auto effectOnly = [&](const MusculoskeletalProblem& data, const Verdict& of) {
+  const auto effectOnly = [&](const MusculoskeletalProblem& data, const Verdict& found) {
     result.addsEffect = true;
-    if (of.effects.empty()) return;
-    result.effectOnly = addEffects(data.encompassing(), effectsToAdd(data, of), request.provenance);
+    if (found.effects.empty()) return;
+    result.effectOnly =
+        addEffects(data.encompassing(), effectsToAdd(data, found), request.provenance);
   };
   if (verdict.finding == Finding::unknown && verdict.formula && verdict.formula->wins) {
     const info::discover::RacedFormula& formula = *verdict.formula;

@@ -14,8 +14,8 @@ std::vector<std::string> heldRemarks(const Trial& trial, const Model& model,
   std::vector<std::string> remarks;
   const Skeleton skeleton(model, options);
   for (const MeasuredChannel& motion : trial.measured) {
-    if (!motion.what.isCoordinate() || skeleton.indexOf(motion.what.of) >= 0) continue;
-    const Coordinate& c = findCoordinate(model, motion.what.of);
+    if (!motion.what.isCoordinate() || skeleton.indexOf(motion.what.object) >= 0) continue;
+    const Coordinate& c = findCoordinate(model, motion.what.object);
     const Skeleton::CoordinateSource& source = skeleton.sourceOf(c.name);
     const bool isCoupled =
         std::any_of(model.couplers.begin(), model.couplers.end(),

@@ -199,12 +199,12 @@ class Work {
     const Estimate* worst = nullptr;
     for (const Estimate& e : verdict_.calibration)
       if (data_.quantities()[e.quantity].trial < 0 &&
-          (worst == nullptr || std::abs(e.surprise) > std::abs(worst->surprise)))
+          (worst == nullptr || std::abs(e.priorZ) > std::abs(worst->priorZ)))
         worst = &e;
-    if (worst != nullptr) judgement.surprise = std::abs(worst->surprise);
+    if (worst != nullptr) judgement.priorZ = std::abs(worst->priorZ);
 
     gaps(before, after, judgement);
-    judgement.explained = verdict_.gap.closedFromCalibrated;
+    judgement.explained = verdict_.excess.closedFromCalibrated;
     if (stepsTooLong()) return;
     Decision decision = decide(data_.candidates(), judgement, options_);
     const Fit smoothing =
@@ -221,7 +221,7 @@ class Work {
     verdict_.effects = decision.effects;
     verdict_.probability = decision.probability;
     verdict_.vetoed = decision.vetoed;
-    verdict_.proxy = decision.proxy;
+    verdict_.surrogate = decision.surrogate;
     collectRivals();
     // a parameter in error that is evident without a comparison of candidates
     if (decision.finding == Finding::parameter && decision.effects.empty())
@@ -275,8 +275,8 @@ class Work {
     Options options = options_;
     options.sds = verdict_.sds;
     if (options_.progress)
-      options.progress = [this, from = fraction_](const Progress& of) {
-        return options_.progress({Stage::decide, from + of.fraction * (0.97 - from), of.doing});
+      options.progress = [this, from = fraction_](const Progress& now) {
+        return options_.progress({Stage::decide, from + now.fraction * (0.97 - from), now.doing});
       };
     return options;
   }
@@ -292,9 +292,9 @@ class Work {
   }
 
   void gaps(const Entry& before, const Entry& after, Judgement& judgement) {
-    ExcessError& gap = verdict_.gap;
-    gap.floor = verdict_.sds.sd(0);
-    gap.range = rangeOf(data_, trials_, verdict_.sds);
+    ExcessError& excess = verdict_.excess;
+    excess.floor = verdict_.sds.sd(0);
+    excess.range = rangeOf(data_, trials_, verdict_.sds);
     const Noise still{verdict_.sds, 0, options_.latentTime};
     const Likelihood& likelihood = search_->likelihood();
     const auto nominal = [&](const Likelihood& l) {
@@ -302,10 +302,10 @@ class Work {
       return fit ? l.simulationError(fit->values, still.output)
                  : HUGE_VAL;  // the original model may not reach the end of a trial
     };
-    gap.nominal = nominal(likelihood);
-    gap.calibrated = likelihood.simulationError(search_->simulation({}).values, still.output);
-    gap.after = likelihood.simulationError(search_->simulation(chosen_).values, still.output);
-    explainExcess(gap);
+    excess.nominal = nominal(likelihood);
+    excess.calibrated = likelihood.simulationError(search_->simulation({}).values, still.output);
+    excess.after = likelihood.simulationError(search_->simulation(chosen_).values, still.output);
+    explainExcess(excess);
     if (options_.heldOut.empty()) return;
     std::vector<int> every;
     for (int t = 0; t < data_.numTrials(); ++t) every.push_back(t);
@@ -318,8 +318,8 @@ class Work {
     keepStarts(without, verdict_.base);
     verdict_.heldOutStarts = keepStarts(with, verdict_.values);
     ExcessError other;
-    other.floor = gap.floor;
-    other.range = gap.range;
+    other.floor = excess.floor;
+    other.range = excess.range;
     other.nominal = nominal(held);
     other.calibrated = without.error;
     other.after = with.error;

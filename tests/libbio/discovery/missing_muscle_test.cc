@@ -66,7 +66,7 @@ TEST(MissingMuscle, HasTheMeanEmgOfThoseThatPullAsItDoesIfItHasNone) {
   trial.muscles.pop_back();
   trial.excitations.conservativeResize(Eigen::NoChange, trial.excitations.cols() - 1);
   const MusculoskeletalProblem data = c.data(trial, c.model);
-  EXPECT_EQ(data.encompassing().proxies().at("BRD"),
+  EXPECT_EQ(data.encompassing().synergists().at("BRD"),
             (std::vector<std::string>{"BIClong", "BICshort", "BRA"}));
   const Trial proxied = withProxies(trial, data.encompassing());
   ASSERT_EQ(proxied.muscles.back(), "BRD");

@@ -152,8 +152,8 @@ class EncompassingModel {
   std::size_t addLaw(ExpressionBasedCoordinateForce law);
   /// Switches on a muscle that is switched off in the base model, while a quantity requires it. Its
   /// F0 becomes negligible and is the number whose index is returned. Its EMG is that of the trial,
-  /// or the mean of those of `proxies` (at least one).
-  std::size_t addMuscle(std::size_t muscle, std::vector<std::string> proxies);
+  /// or the mean of those of `synergists` (at least one).
+  std::size_t addMuscle(std::size_t muscle, std::vector<std::string> synergists);
   void addTimedForce(const TimedForce& force) { timedForces_.push_back(force); }
   /// Latest start and earliest end of the trials [s]: between them timed forces may change.
   void trialsLast(double first, double last);
@@ -174,7 +174,7 @@ class EncompassingModel {
   const std::map<std::string, std::string>& present() const { return present_; }
   Eigen::VectorXd nominal() const;
   /// Muscles whose EMG represents that of a muscle which was added.
-  const std::map<std::string, std::vector<std::string>>& proxies() const { return proxies_; }
+  const std::map<std::string, std::vector<std::string>>& synergists() const { return synergists_; }
 
   /// Model and EMG mapping at values; the start is the default position at rest.
   /// @param wanted quantities whose derivatives are required: their forces are switched on
@@ -234,11 +234,11 @@ class EncompassingModel {
   std::vector<Law> laws_;
   std::vector<TimedForce> timedForces_;
   ConditionQuantities conditions_;
-  std::map<std::string, std::vector<std::string>> proxies_;
+  std::map<std::string, std::vector<std::string>> synergists_;
 };
 
 /// The trial with an excitation for every muscle that was added: its own, or the mean of its
-/// proxies. @throws std::invalid_argument if the trial lacks a proxy
+/// synergists. @throws std::invalid_argument if the trial lacks one of them
 Trial withProxies(Trial trial, const EncompassingModel& encompassing);
 
 }  // namespace bio::discover
