@@ -279,18 +279,18 @@ ParameterDirection EncompassingModel::direction(const VectorXd& values,
 }
 
 SensorLaw EncompassingModel::sensorAt(const VectorXd& values, std::size_t sensor) const {
-  SensorLaw sensor;
+  SensorLaw law;
   for (std::size_t i = 0; i < meanings_.size(); ++i) {
     if (meanings_[i].sensor != sensor) continue;
     const double value = values[static_cast<Index>(i)];
-    if (meanings_[i].kind == Meaning::Kind::bias) sensor.bias += value;
-    if (meanings_[i].kind == Meaning::Kind::gain) sensor.gain += value;
-    if (meanings_[i].kind == Meaning::Kind::clock) sensor.clock += value;
-    if (meanings_[i].kind == Meaning::Kind::rate) sensor.rate += value;
-    if (meanings_[i].kind == Meaning::Kind::lag) sensor.lag += value;
-    if (meanings_[i].kind == Meaning::Kind::drift) sensor.drift += value;
+    if (meanings_[i].kind == Meaning::Kind::bias) law.bias += value;
+    if (meanings_[i].kind == Meaning::Kind::gain) law.gain += value;
+    if (meanings_[i].kind == Meaning::Kind::clock) law.clock += value;
+    if (meanings_[i].kind == Meaning::Kind::rate) law.rate += value;
+    if (meanings_[i].kind == Meaning::Kind::lag) law.lag += value;
+    if (meanings_[i].kind == Meaning::Kind::drift) law.drift += value;
   }
-  return sensor;
+  return law;
 }
 
 Trial withProxies(Trial trial, const EncompassingModel& encompassing) {
