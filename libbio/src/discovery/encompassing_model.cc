@@ -293,7 +293,7 @@ SensorLaw EncompassingModel::sensorAt(const VectorXd& values, std::size_t sensor
   return law;
 }
 
-Trial withProxies(Trial trial, const EncompassingModel& encompassing) {
+Trial withSynergists(Trial trial, const EncompassingModel& encompassing) {
   for (const auto& [muscle, synergists] : encompassing.synergists()) {
     const auto has = [&](const std::string& name) {
       return std::find(trial.muscles.begin(), trial.muscles.end(), name);

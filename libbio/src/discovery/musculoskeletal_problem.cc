@@ -118,7 +118,7 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
   encompassing_.trialsLast(lastStart, firstEnd);
   encompassing_.forget(unsaturated(encompassing_, withFlatTops(trials)));
   quantities_ = encompassing_.quantities();
-  for (Trial& trial : trials) addTrial(withProxies(std::move(trial), encompassing_));
+  for (Trial& trial : trials) addTrial(withSynergists(std::move(trial), encompassing_));
   latentLag_ = activationLag();
   separateWhatTrialsTellApart();
 }

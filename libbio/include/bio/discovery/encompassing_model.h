@@ -239,6 +239,6 @@ class EncompassingModel {
 
 /// The trial with an excitation for every muscle that was added: its own, or the mean of its
 /// synergists. @throws std::invalid_argument if the trial lacks one of them
-Trial withProxies(Trial trial, const EncompassingModel& encompassing);
+Trial withSynergists(Trial trial, const EncompassingModel& encompassing);
 
 }  // namespace bio::discover
