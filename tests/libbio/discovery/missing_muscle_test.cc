@@ -71,8 +71,8 @@ TEST(MissingMuscle, HasTheMeanEmgOfThoseThatPullAsItDoesIfItHasNone) {
   const Trial with = withSynergists(trial, data.encompassing());
   ASSERT_EQ(with.muscles.back(), "BRD");
   const auto column = [&](const std::string& muscle) {
-    const auto at = std::find(with.muscles.begin(), proxied.muscles.end(), muscle);
-    return VectorXd(with.excitations.col(at - proxied.muscles.begin()));
+    const auto at = std::find(with.muscles.begin(), with.muscles.end(), muscle);
+    return VectorXd(with.excitations.col(at - with.muscles.begin()));
   };
   EXPECT_LT((3 * column("BRD") - column("BIClong") - column("BICshort") - column("BRA"))
                 .cwiseAbs()
