@@ -177,7 +177,7 @@ class Calibrator {
     for (std::size_t i = 0; i < training_.channels().size(); ++i)
       if (training_.channels()[i].areAngles) result_.noiseFloor = measuredSd(training_, i);
     const std::vector<VectorXd> nudged =
-        options_.from ? std::vector<VectorXd>() : ledFrom(valuesOf(asked_), estimate);
+        options_.from ? std::vector<VectorXd>() : nudgedFrom(valuesOf(asked_), estimate);
     const MatrixXd guess = best(nudged);
     std::vector<ResidualNoise> first = channels_.of(guess, 0);
     for (ResidualNoise& noise : first) noise.effective = noise.sd;  // white until there is a fit
@@ -260,7 +260,7 @@ class Calibrator {
   }
 
   /// Where further starts end that are led by held models; none where nothing is to be led.
-  std::vector<VectorXd> ledFrom(const VectorXd& start, const info::EstimateOptions& estimate) {
+  std::vector<VectorXd> nudgedFrom(const VectorXd& start, const info::EstimateOptions& estimate) {
     const std::vector<ResidualNoise> shown = channels_.shown();
     channels_.weigh(shown);
     const double sd = shown.front().sd;
