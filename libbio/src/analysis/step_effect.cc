@@ -67,8 +67,8 @@ std::string describe(const StepEffect& effect) {
   const std::string what =
       effect.failed.empty()
           ? fmt::format("{} differs by up to {:.3g} {}, at {:.3g} s", effect.coordinate,
-                        effect.difference * shownFactor(effect.turns), effect.turns ? "deg" : "mm",
-                        effect.at)
+                        effect.difference * positionUnit(effect.turns).factor,
+                        positionUnit(effect.turns).name, effect.at)
           : fmt::format("the motion does not reach the end ({})", effect.failed);
   return fmt::format(
       "with half the step ({:.4g} s) {}: the step of {:.4g} s is too long for this trial",
