@@ -10,7 +10,7 @@
 namespace bio {
 namespace {
 
-using Kind = ForceNumberTarget::Kind;
+using ForceKind = ForceNumberTarget::Kind;
 
 constexpr const char* axes[] = {"x", "y", "z"};
 
@@ -88,26 +88,26 @@ ForceNumberRule elasticRule(const ElasticPath& path, int number) {
 
 }  // namespace
 
-int numForceNumbers(Kind kind) {
+int numForceNumbers(ForceKind kind) {
   constexpr int counts[] = {2, 12, 4, 1};
   return counts[static_cast<int>(kind)];
 }
 
 double* forceNumber(Model& model, const ForceNumberTarget& target) {
   switch (target.kind) {
-    case Kind::pointSpring: {
+    case ForceKind::pointSpring: {
       PointToPointSpring& spring = model.pointSprings[target.force];
       return target.number == springStiffness ? &spring.stiffness : &spring.restLength;
     }
-    case Kind::bushing: {
+    case ForceKind::bushing: {
       const BushingPart& part = bushingParts[static_cast<std::size_t>(target.number / 3)];
       return &(model.bushings[target.force].*part.member)[target.number % 3];
     }
-    case Kind::elasticPath: {
+    case ForceKind::elasticPath: {
       ElasticPath& path = model.elasticPaths[target.force];
       return &(path.*elasticMember(path.kind, target.number));
     }
-    case Kind::actuator:
+    case ForceKind::actuator:
       break;
   }
   return &model.actuators[target.force].optimalForce;
@@ -119,23 +119,23 @@ double forceNumber(const Model& model, const ForceNumberTarget& target) {
 
 ForceNumberRule forceNumberRule(const Model& model, const ForceNumberTarget& target) {
   switch (target.kind) {
-    case Kind::pointSpring: {
+    case ForceKind::pointSpring: {
       const PointToPointSpring& spring = model.pointSprings[target.force];
       if (target.number == springRestLength) {
         return restingLength("rest_length", "length without force", spring.restLength);
       }
       return positive("stiffness", "N/m", "stiffness of the spring", spring.stiffness, 1e-6);
     }
-    case Kind::bushing: {
+    case ForceKind::bushing: {
       const BushingPart& part = bushingParts[static_cast<std::size_t>(target.number / 3)];
       const Eigen::Vector3d& all = model.bushings[target.force].*part.member;
       const int axis = target.number % 3;
       return positive(std::string(part.name) + "." + axes[axis], part.unit, part.meaning, all[axis],
                       std::max(all.maxCoeff(), 1e-6));
     }
-    case Kind::elasticPath:
+    case ForceKind::elasticPath:
       return elasticRule(model.elasticPaths[target.force], target.number);
-    case Kind::actuator:
+    case ForceKind::actuator:
       break;
   }
   const CoordinateActuator& actuator = model.actuators[target.force];
