@@ -58,7 +58,7 @@ Figure sweepFigure(const SensitivityFindings& f, const bio::Sweep& sweep) {
 }
 
 Table sweepTable(const SensitivityFindings& f, const bio::Sweep& sweep) {
-  const char* unit = shownUnit(f.coordinate);
+  const std::string unit = shownUnit(f.coordinate);
   Table table{.title = "Change in the motion",
               .columns = {fmt::format("{} [{}]", sweep.parameter.name,
                                       sweep.parameter.unit.empty() ? "1" : sweep.parameter.unit),
@@ -135,7 +135,7 @@ Figure profileFigure(const bio::ProfileFinding& finding) {
 }
 
 Table globalTable(const SensitivityFindings& f) {
-  const char* unit = shownUnit(f.coordinate);
+  const std::string unit = shownUnit(f.coordinate);
   Table table{.title = "Global sensitivity over the prior range", .columns = {"parameter"}};
   if (f.global.morris) {
     table.columns.push_back(fmt::format("Morris μ* [{}]", unit));
