@@ -66,6 +66,7 @@ class Discover : public Command {
         ->capture_default_str()
         ->type_name("N");
     addInputScatter(options, inputScatter_);
+    addTimeLimit(options, timeLimit_);
     const std::size_t common = options.get_options().size();
     addSimulationOptions(options, simulation_);
     addPrescribing(options, simulation_);
@@ -89,6 +90,7 @@ class Discover : public Command {
       robot_.without = without_;
       robot_.maxEffects = maxEffects_;
       robot_.inputScatter = inputScatter_;
+      robot_.timeLimit = timeLimit_;
       robot_.ignoreExtra = simulation_.ignoreExtra;
       robot_.step = simulation_.step;
       mustSuitRobots();
@@ -97,8 +99,9 @@ class Discover : public Command {
     }
     if (trials_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
     if (!robot_.with.empty()) throw std::invalid_argument("--with requires --system");
-    ModelDiscoveryRequest request{model_,       trials_,     heldOut_,      without_,   noise_,
-                                  outputNoise_, maxEffects_, inputScatter_, simulation_};
+    ModelDiscoveryRequest request{model_,     trials_,      heldOut_,    without_,
+                                  noise_,     outputNoise_, maxEffects_, inputScatter_,
+                                  timeLimit_, simulation_};
     return discoverInModel(request, context).status;
   }
 
@@ -134,7 +137,7 @@ class Discover : public Command {
   std::optional<double> noise_;
   int maxEffects_ = 3;
   bool listEffects_ = false;
-  std::optional<double> inputScatter_;
+  std::optional<double> inputScatter_, timeLimit_;
   SimulationOptions simulation_;
   RobotRequest robot_;
   std::vector<const CLI::Option*> systemOptions_;

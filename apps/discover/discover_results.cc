@@ -8,6 +8,8 @@
 
 namespace app {
 
+using info::discover::Stage;
+
 nlohmann::ordered_json writeFindings(const DiscoverFindings& findings, Summary& summary,
                                      OutputFolder& folder) {
   tellFindings(findings, summary);
@@ -22,8 +24,9 @@ ExitStatus deliverFindings(const DiscoverFindings& findings, const WatchedSearch
                            const CommandContext& context, Summary& summary, OutputFolder& folder) {
   deliver(context, summary, discoverReport(findings), folder);
   if (watch.wasInterrupted()) throw Interrupted{};
-  return findings.verdict.finding == info::discover::Finding::numerical ? ExitStatus::answerIsNo
-                                                                        : ExitStatus::done;
+  const bool isAnswer = findings.verdict.finding != info::discover::Finding::numerical &&
+                        !(watch.ranOutOfTime() && findings.verdict.reached != Stage::finished);
+  return isAnswer ? ExitStatus::done : ExitStatus::answerIsNo;
 }
 
 }  // namespace app

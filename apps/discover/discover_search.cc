@@ -2,12 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "options/number_rules.h"
 #include "output/interruption.h"
 
 namespace app {
+namespace {
+
+constexpr double longestLimit = 1e8;  // [s], three years: a clock's own range is not much longer
+
+}  // namespace
 
 void addInputScatter(CLI::App& options, std::optional<double>& inputScatter,
                      const std::string& when, const std::string& group) {
@@ -34,15 +41,31 @@ info::discover::Options engineOptions(int maxEffects, const std::optional<double
   return options;
 }
 
-WatchedSearch::WatchedSearch(bool quiet) {
+void addTimeLimit(CLI::App& options, std::optional<double>& limit) {
+  options
+      .add_option(
+          "--time-limit", limit,
+          "elapsed time after which the search ends with what it has (verdict 'stopped', exit "
+          "status 1); default: none")
+      ->check(positive())
+      ->type_name("SECONDS");
+}
+
+WatchedSearch::WatchedSearch(bool quiet, const std::optional<double>& limit) {
   if (!quiet) bar_.emplace("discover");
+  if (limit)
+    end_ = std::chrono::steady_clock::now() +
+           std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+               std::chrono::duration<double>(std::min(*limit, longestLimit)));
 }
 
 std::function<bool(const info::discover::Progress&)> WatchedSearch::progress() {
   return [this](const info::discover::Progress& progress) {
     interrupted_ = interruptionRequested();
-    if (!interrupted_ && bar_) bar_->update(progress.fraction);
-    return !interrupted_;
+    outOfTime_ = end_ && std::chrono::steady_clock::now() > *end_;
+    const bool goesOn = !interrupted_ && !outOfTime_;
+    if (goesOn && bar_) bar_->update(progress.fraction);
+    return goesOn;
   };
 }
 

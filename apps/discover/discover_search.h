@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -19,22 +20,26 @@ namespace app {
 info::discover::Options engineOptions(int maxEffects, const std::optional<double>& inputScatter);
 void addInputScatter(CLI::App& options, std::optional<double>& inputScatter,
                      const std::string& when = {}, const std::string& group = "Options");
+void addTimeLimit(CLI::App& options, std::optional<double>& limit);
 
-/// A search as its user sees it: a progress bar (unless quiet), and Ctrl-C, which ends it with the
-/// result so far.
+/// A search as its user sees it: a progress bar (unless quiet), and Ctrl-C or a time limit, which
+/// end it with the result so far.
 class WatchedSearch {
  public:
-  explicit WatchedSearch(bool quiet = false);
+  /// @param limit [s] of elapsed time, from now on; it ends with the fit that is then made
+  WatchedSearch(bool quiet, const std::optional<double>& limit);
 
   /// For info::discover::Options::progress. Refers to this object.
   std::function<bool(const info::discover::Progress&)> progress();
   bool wasInterrupted() const { return interrupted_; }
+  bool ranOutOfTime() const { return outOfTime_; }
   /// Takes the progress bar away.
   void end() { bar_.reset(); }
 
  private:
   std::optional<ProgressBar> bar_;
-  bool interrupted_ = false;
+  std::optional<std::chrono::steady_clock::time_point> end_;
+  bool interrupted_ = false, outOfTime_ = false;
 };
 
 /// Warns if there is one trial only and none is held out.

@@ -236,6 +236,19 @@ ordered_json evidenceJson(const DiscoverFindings& f) {
   return list;
 }
 
+/// Ids of the effects that are in no hypothesis that was fitted.
+ordered_json notRacedJson(const DiscoverFindings& f) {
+  ordered_json ids = ordered_json::array();
+  for (std::size_t c = 0; c < f.data.candidates().size(); ++c)
+    if (std::none_of(f.verdict.finalists.begin(), f.verdict.finalists.end(),
+                     [&](const auto& raced) {
+                       return std::find(raced.effects.begin(), raced.effects.end(), c) !=
+                              raced.effects.end();
+                     }))
+      ids.push_back(f.data.candidates()[c].id);
+  return ids;
+}
+
 ordered_json nonparametricForceJson(const DiscoverFindings& f) {
   const info::discover::NonparametricForce& force = *f.verdict.nonparametric;
   ordered_json besides = ordered_json::array();
@@ -359,6 +372,10 @@ ordered_json verdictJson(const DiscoverFindings& f) {
     json["model"] =
         f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->model);
     json["trials"] = trialsJson(f);
+    const bio::discover::InputAgreement& inputs = f.written->inputs;
+    json["input_agreement"] = {{"correlation", orNull(inputs.correlation)},
+                               {"remedies", inputs.remedies},
+                               {"remedied", orNull(inputs.remedied)}};
     if (f.written->positionBreak) json["position_break"] = positionBreakJson(f);
   }
   json["step_s"] = orNull(f.step);
@@ -386,6 +403,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
     json["already_in_the_model"][id] = where;
   }
   json["evidence"] = evidenceJson(f);
+  json["not_raced"] = notRacedJson(f);
   if (verdict.nonparametric) json["force_without_a_name"] = nonparametricForceJson(f);
   addUnknown(f, json);
   return json;

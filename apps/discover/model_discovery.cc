@@ -181,7 +181,7 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
   for (const bio::Observable& what : asked.problem.sensors) outputs.push_back(shownOf(what, model));
   asked.search.sds = noiseOf(request, outputs);
   asked.provenance = provenanceOf(summary);
-  WatchedSearch watch(context.quiet);
+  WatchedSearch watch(context.quiet, request.timeLimit);
   asked.search.progress = watch.progress();
   bio::discover::DiscoveryResult result = bio::discover::discover(asked);
   watch.end();

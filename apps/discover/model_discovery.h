@@ -23,6 +23,7 @@ struct ModelDiscoveryRequest {
   std::vector<std::string> outputNoise;  ///< NAME=VALUE, in the unit in which that output is shown
   int maxEffects = 3;                    ///< largest number of effects in one hypothesis
   std::optional<double> inputScatter;    ///< of --input-scatter
+  std::optional<double> timeLimit;       ///< [s] of elapsed time
   SimulationOptions simulation;
 };
 

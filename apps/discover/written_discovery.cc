@@ -47,6 +47,7 @@ class DiscoveryWriter {
     written_.trials = result_.trials;
     written_.shown = result_.shown;
     written_.sizes = result_.sizes;
+    written_.inputs = result_.inputs;
     written_.positionBreak = result_.positionBreak;
     written_.trialsAreCut = result_.trialsAreCut;
     if (result_.found.verdict.base.size() == 0)

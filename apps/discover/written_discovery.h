@@ -20,6 +20,7 @@ struct WrittenDiscovery {
   std::vector<std::string> replayFiles;  ///< file to replay instead of each trial, as typed
   int shown = 0;  ///< index of the trial that `sizes` refer to, a held-out one if there is one
   std::vector<bio::discover::EffectSize> sizes;                ///< of Verdict::effects
+  bio::discover::InputAgreement inputs;                        ///< as DiscoveryResult
   std::optional<info::discover::PositionBreak> positionBreak;  ///< as DiscoveryResult
   bool trialsAreCut = false;
   std::vector<std::pair<std::string, std::string>>

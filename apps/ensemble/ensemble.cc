@@ -154,7 +154,7 @@ class Ensemble : public Command {
     if (!pool->leads() && !pool->start()) return ExitStatus::done;
     if (!discover_.empty()) {
       return discoverInSets(
-          {model_, {}, {}, {}, noise_, {}, maxEffects_, inputScatter_, simulation_}, discover_,
+          {model_, {}, {}, {}, noise_, {}, maxEffects_, inputScatter_, {}, simulation_}, discover_,
           context, *pool, threads);
     }
     if (!pool->leads()) {

@@ -136,7 +136,7 @@ class RobotSearch {
     asked.step = request_.step;
     asked.problem = problemOptions(channels);
     asked.search = engineOptions(request_.maxEffects, request_.inputScatter);
-    WatchedSearch watch(context_.quiet);
+    WatchedSearch watch(context_.quiet, request_.timeLimit);
     asked.search.progress = watch.progress();
     const info::robot::DiscoveryResult result = info::robot::discover(asked);
     const info::discover::SteppedVerdict& found = result.found;

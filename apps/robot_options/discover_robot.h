@@ -19,6 +19,7 @@ struct RobotRequest {
   std::vector<std::string> trials, heldOut, without;
   std::optional<double> step;  ///< [s]
   int maxEffects = 3;
+  std::optional<double> timeLimit;  ///< [s]
   std::optional<double> inputScatter;
   bool ignoreExtra = false;
 };

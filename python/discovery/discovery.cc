@@ -200,6 +200,8 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
     effects.append(effectOf(data, verdict.effects[i], result.sizes[i]));
   return results(**verdictMembers(data, found, result.fitted), "effects"_a = effects,
                  "noise"_a = verdict.sds.sd(0), "outputs"_a = outputsOf(data, verdict),
+                 "input_correlation"_a = result.inputs.correlation,
+                 "remedies"_a = result.inputs.remedies,
                  "position_break"_a =
                      result.positionBreak ? py::cast(result.positionBreak->position) : py::none(),
                  "trials_are_cut"_a = result.trialsAreCut,

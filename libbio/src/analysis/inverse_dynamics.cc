@@ -9,7 +9,14 @@ namespace bio {
 Trajectory inverseDynamics(MusculoskeletalSystem system, const ExcitationSignal& excitation,
                            const std::vector<double>& times, const Eigen::MatrixXd& q,
                            SimulationOptions options) {
-  const int n = system.skeleton().numCoordinates();
+  return inverseDynamicsOf(std::move(system).withAllPrescribed(), excitation, times, q,
+                           std::move(options));
+}
+
+Trajectory inverseDynamicsOf(const MusculoskeletalSystem& driven,
+                             const ExcitationSignal& excitation, const std::vector<double>& times,
+                             const Eigen::MatrixXd& q, SimulationOptions options) {
+  const int n = driven.skeleton().numCoordinates();
   if (times.size() < 2 || q.rows() != n || q.cols() != static_cast<Eigen::Index>(times.size())) {
     throw std::invalid_argument(
         fmt::format("inverse dynamics: {} × {} coordinates at {} times, must be {} × the number of "
@@ -20,7 +27,6 @@ Trajectory inverseDynamics(MusculoskeletalSystem system, const ExcitationSignal&
   for (int k = 0; k < n; ++k) options.prescribed.add(k, times, {q.row(k).begin(), q.row(k).end()});
   options.startTime = times.front();
   options.duration = times.back() - times.front();
-  const MusculoskeletalSystem driven = std::move(system).withAllPrescribed();
   return simulate(driven, excitation, initialState(driven, q.col(0), excitation, options.startTime),
                   options);
 }

@@ -34,6 +34,23 @@ std::vector<std::string> withFlatTops(const std::vector<Trial>& trials) {
   return muscles;
 }
 
+/// Muscles whose excitation is one number in all rows of all trials: without an electrode, at the
+/// baseline. A recorded EMG is never constant.
+std::vector<std::string> neverRecorded(const std::vector<Trial>& trials) {
+  std::vector<std::string> muscles;
+  const Trial& first = trials.front();
+  for (std::size_t i = 0; i < first.muscles.size(); ++i) {
+    const auto column = static_cast<Index>(i);
+    const double value = first.excitations(0, column);
+    if (std::all_of(trials.begin(), trials.end(), [&](const Trial& trial) {
+          return i < trial.muscles.size() && trial.muscles[i] == first.muscles[i] &&
+                 (trial.excitations.col(column).array() == value).all();
+        }))
+      muscles.push_back(first.muscles[i]);
+  }
+  return muscles;
+}
+
 /// There will be thousands of simulations.
 SystemOptions withTables(SystemOptions system) {
   system.tabulatePaths = true;
@@ -117,6 +134,7 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
   }
   encompassing_.trialsLast(lastStart, firstEnd);
   encompassing_.forget(unsaturated(encompassing_, withFlatTops(trials)));
+  encompassing_.forget(withoutElectrode(encompassing_, neverRecorded(trials)));
   quantities_ = encompassing_.quantities();
   for (Trial& trial : trials) addTrial(withSynergists(std::move(trial), encompassing_));
   latentLag_ = activationLag();

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "bio/model/units.h"
 #include "discovery/first_part.h"
 
@@ -41,6 +44,39 @@ std::string sentenceOf(const info::discover::PositionBreak& found, const Coordin
       found.above ? "Above" : "Below", where, coordinate.isRotation ? "torque" : "force",
       found.beyond - found.before, coordinate.isRotation ? "N m" : "N",
       trialsAreCut ? "; the trials were used up to where they first pass it." : ".");
+}
+
+/// An error of all outputs together, as people read it.
+std::string errorText(const MusculoskeletalProblem& data, const Verdict& verdict, double error) {
+  const auto& sensors = data.encompassing().sensors();
+  if (sensors.size() > 1) return fmt::format("{:.2g} times the noise", error / verdict.sds.sd(0));
+  const std::string unit = unitOf(sensors.front(), data.encompassing().base());
+  if (unit == "rad") return fmt::format("{:.2g} deg", error * degreesPerRadian);
+  if (unit == "m") return fmt::format("{:.2g} mm", 1e3 * error);
+  return fmt::format("{:.2g} {}", error, unit);
+}
+
+/// What refitting the model's own parameters did where nothing is missing; empty unless it more
+/// than halved the error.
+std::string refitSentence(const MusculoskeletalProblem& data, const Verdict& verdict,
+                          const std::vector<info::discover::FittedNumber>& fitted) {
+  const info::discover::ExcessError& excess = verdict.excess;
+  if (verdict.finding != Finding::none || !(excess.nominal > 2 * excess.after)) return {};
+  const auto& quantities = data.quantities();
+  const info::discover::Estimate* most = nullptr;
+  for (const info::discover::Estimate& e : verdict.nuisancesAfter)
+    if (quantities[e.quantity].trial < 0 && (!most || e.moves > most->moves)) most = &e;
+  if (!most) return {};
+  const auto number = std::find_if(fitted.begin(), fitted.end(),
+                                   [&](const auto& of) { return of.quantity == most->quantity; });
+  const std::string before =
+      std::isfinite(excess.nominal)
+          ? fmt::format("With its nominal parameters the model is {} off",
+                        errorText(data, verdict, excess.nominal))
+          : std::string("With its nominal parameters the model does not follow the trials");
+  return fmt::format(" {}, with refitted ones {}, mostly by {} {:+.0f} %.", before,
+                     errorText(data, verdict, excess.after), number->name,
+                     100 * (number->estimate / number->nominal - 1));
 }
 
 /// The trials up to a break; empty if one of them is too short then.
@@ -117,12 +153,51 @@ void repair(const DiscoveryRequest& request, DiscoveryResult& result) {
   }
 }
 
+/// The clauses, "or" between them.
+std::string either(const std::vector<std::string>& clauses) {
+  std::string words;
+  for (const std::string& clause : clauses) words += (words.empty() ? "" : ", or ") + clause;
+  return words;
+}
+
+/// No search where the recording contradicts itself: every effect would be one that imitates that.
+void searchUnlessContradicted(const DiscoveryRequest& request, DiscoveryResult& result) {
+  result.inputs =
+      inputAgreement(request.model, request.system, request.coordinates, request.trials);
+  const InputAgreement& inputs = result.inputs;
+  if (inputs.remedies.empty()) {
+    result.found = search(request, request.trials, result);
+    searchBeforeBreak(request, result);
+    Verdict& verdict = result.found.verdict;
+    if (!(inputs.correlation < InputAgreement::unrelated) || !mayBeAdded(verdict)) return;
+    verdict.vetoed = true;
+    verdict.probability = 0;
+    verdict.sentence += fmt::format(
+        " But the muscles' moments are unrelated to those that the motion requires (correlation "
+        "{:.2f}): are the excitations of this trial, this side and these muscles?",
+        inputs.correlation);
+    return;
+  }
+  MusculoskeletalProblemOptions problem = request.problem;
+  if (request.step) problem.simulation.step = *request.step;
+  result.data = std::make_unique<MusculoskeletalProblem>(
+      request.model, request.system, request.coordinates, request.trials, problem);
+  info::discover::Options& options = result.found.options = request.search;
+  for (std::size_t i = request.trials.size() - request.numHeldOut; i < request.trials.size(); ++i)
+    options.heldOut.push_back(static_cast<int>(i));
+  result.found.step = problem.simulation.step;
+  Verdict& verdict = result.found.verdict = info::discover::withoutSearch(*result.data, options);
+  verdict.sentence = fmt::format(
+      "The recording contradicts itself: the moments of the muscles do not follow those that the "
+      "motion requires (correlation {:.2f}), but they do ({:.2f}) if {}. No effect was looked for.",
+      inputs.correlation, inputs.remedied, either(inputs.remedies));
+}
+
 }  // namespace
 
 DiscoveryResult discover(const DiscoveryRequest& request) {
   DiscoveryResult result;
-  result.found = search(request, request.trials, result);
-  searchBeforeBreak(request, result);
+  searchUnlessContradicted(request, result);
   Verdict& verdict = result.found.verdict;
   const MusculoskeletalProblem& data = *result.data;
   repair(request, result);
@@ -132,6 +207,7 @@ DiscoveryResult discover(const DiscoveryRequest& request) {
     result.sizes.push_back(effectSize(data, effect.candidate, verdict.values, result.shown));
   if (result.repaired) takeReplays(verdict, *result.repaired);
   result.fitted = fittedNumbers(data, verdict);
+  verdict.sentence += refitSentence(data, verdict, result.fitted);
   if (verdict.reached == Stage::finished) {
     MusculoskeletalProblemOptions options = request.problem;
     options.simulation.step = data.options().simulation.step;

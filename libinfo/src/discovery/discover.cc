@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "discovery/judgement/held_out_trials.h"
@@ -74,10 +75,14 @@ class Work {
         verdict_.finalists.begin(), verdict_.finalists.end(),
         [](const Finalist& a, const Finalist& b) { return a.logEvidence < b.logEvidence; });
     if (best->effects.empty()) return "";
+    std::set<std::size_t> tried;
+    for (const Finalist& f : verdict_.finalists) tried.insert(f.effects.begin(), f.effects.end());
     return fmt::format(
-        "; of {} hypotheses fitted so far {} leads, with a log Bayes factor of {:.1f} nats against "
-        "the base model",
-        verdict_.finalists.size() - 1, describe(data_, best->effects), best->logEvidence);
+        "; of {} hypotheses fitted so far, with {} of {} effects, {} leads, with a log Bayes "
+        "factor "
+        "of {:.1f} nats against the base model",
+        verdict_.finalists.size() - 1, tried.size(), data_.candidates().size(),
+        describe(data_, best->effects), best->logEvidence);
   }
 
   LocaliseOptions mapOptions() const { return {0.25, 8, 6, options_.falseDiscoveries}; }
@@ -203,6 +208,7 @@ class Work {
         worst = &e;
     if (worst != nullptr) judgement.priorZ = std::abs(worst->priorZ);
 
+    addMoves(search_->likelihood(), after.fit, verdict_.nuisancesAfter);
     gaps(before, after, judgement);
     judgement.explained = verdict_.excess.closedFromCalibrated;
     if (stepsTooLong()) return;
@@ -297,12 +303,7 @@ class Work {
     excess.range = rangeOf(data_, trials_, verdict_.sds);
     const Noise still{verdict_.sds, 0, options_.latentTime};
     const Likelihood& likelihood = search_->likelihood();
-    const auto nominal = [&](const Likelihood& l) {
-      const auto fit = l.tryFit(startsOnly(data_, l.trials()), still, nominalValues(data_));
-      return fit ? l.simulationError(fit->values, still.output)
-                 : HUGE_VAL;  // the original model may not reach the end of a trial
-    };
-    excess.nominal = nominal(likelihood);
+    excess.nominal = nominalError(likelihood, still);
     excess.calibrated = likelihood.simulationError(search_->simulation({}).values, still.output);
     excess.after = likelihood.simulationError(search_->simulation(chosen_).values, still.output);
     explainExcess(excess);
@@ -320,7 +321,7 @@ class Work {
     ExcessError other;
     other.floor = excess.floor;
     other.range = excess.range;
-    other.nominal = nominal(held);
+    other.nominal = nominalError(held, still);
     other.calibrated = without.error;
     other.after = with.error;
     if (with.starts) {

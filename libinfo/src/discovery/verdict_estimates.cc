@@ -1,5 +1,7 @@
 #include "discovery/verdict_estimates.h"
 
+#include <cmath>
+
 namespace info::discover {
 
 using Eigen::Index;
@@ -12,7 +14,7 @@ std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>
     const int i = fit.hypothesis.indexOf(q);
     if (i < 0) continue;
     const auto at = static_cast<std::size_t>(i);
-    Estimate e{q, fit.values[static_cast<Index>(q)], fit.sd(at), 0, false};
+    Estimate e{q, fit.values[static_cast<Index>(q)], fit.sd(at)};
     // the prior z-score refers to the quantity's own prior, not to that of a candidate
     FreeQuantity own = fit.hypothesis.free[at];
     own.sd = data.quantities()[q].sd;
@@ -23,6 +25,26 @@ std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>
     result.push_back(e);
   }
   return result;
+}
+
+void addMoves(const Likelihood& likelihood, const Fit& fit, std::vector<Estimate>& estimates) {
+  VectorXd squares = VectorXd::Zero(fit.xi.size());
+  for (std::size_t t = 0; t < likelihood.trials().size(); ++t)
+    squares += likelihood.linearise(t, fit, fit.values, {}, false)
+                   .gamma.colwise()
+                   .squaredNorm()
+                   .transpose();
+  const auto n = static_cast<double>(likelihood.samples());
+  for (Estimate& e : estimates)
+    if (const int i = fit.hypothesis.indexOf(e.quantity); i >= 0)
+      e.moves = std::abs(fit.xi[i]) * std::sqrt(squares[i] / n);
+}
+
+double nominalError(const Likelihood& likelihood, const Noise& noise) {
+  const DiscoveryProblem& data = likelihood.data();
+  const auto fit =
+      likelihood.tryFit(startsOnly(data, likelihood.trials()), noise, nominalValues(data));
+  return fit ? likelihood.simulationError(fit->values, noise.output) : HUGE_VAL;
 }
 
 VectorXd predictedSd(const DiscoveryProblem& data, const Verdict& verdict, int trial) {

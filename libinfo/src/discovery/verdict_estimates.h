@@ -12,4 +12,12 @@ namespace info::discover {
 std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>& wanted,
                                   const DiscoveryProblem& data);
 
+/// Sets Estimate::moves of a fit's estimates: √(Σ (Γ_i ξ_i)²/n) over all samples of the fitted
+/// trials.
+void addMoves(const Likelihood& likelihood, const Fit& fit, std::vector<Estimate>& estimates);
+
+/// RMS error of the nominal model, only the initial states fitted (ExcessError::nominal); infinite
+/// if it does not reach the end of a trial.
+double nominalError(const Likelihood& likelihood, const Noise& noise);
+
 }  // namespace info::discover

@@ -2513,6 +2513,8 @@ class DiscoveryResult:
     gap_held_out: ExcessError | None
     held_out_fitted: bool
     replicated: bool | None
+    input_correlation: float
+    remedies: list[str]
     position_break: float | None
     trials_are_cut: bool
     undetectable_below: dict[str, float]
@@ -2625,6 +2627,12 @@ def discover(
     replicated : bool or None
         Whether held-out trials that are not as predicted show the same effects when fitted by
         themselves; None if this was not asked.
+    input_correlation : float
+        Correlation of the muscles' moments with those that the recorded motion requires; NaN if it
+        cannot be told.
+    remedies : list of str
+        Changes of the recording with which excitations and motion agree; if there is one, the recording
+        contradicts itself, and no effect was looked for.
     position_break : float or None
         Position [rad] or [m] at which the base model lacks a force at once; None if there is none,
         or if the effect is known without.

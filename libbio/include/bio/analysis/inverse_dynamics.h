@@ -27,5 +27,10 @@ namespace bio {
 Trajectory inverseDynamics(MusculoskeletalSystem system, const ExcitationSignal& excitation,
                            const std::vector<double>& times, const Eigen::MatrixXd& q,
                            SimulationOptions options = {});
+/// Inverse dynamics of one system along several motions.
+/// @param driven  with every coordinate prescribed (MusculoskeletalSystem::withAllPrescribed)
+Trajectory inverseDynamicsOf(const MusculoskeletalSystem& driven,
+                             const ExcitationSignal& excitation, const std::vector<double>& times,
+                             const Eigen::MatrixXd& q, SimulationOptions options = {});
 
 }  // namespace bio

@@ -67,6 +67,12 @@ void addFormula(EncompassingModel& model, const MovingCoordinate& at,
 std::vector<std::string> unsaturated(const EncompassingModel& model,
                                      const std::vector<std::string>& flat);
 
+/// Ids of the candidates of electrodes (gain, saturation, crosstalk, exchanged channels) that
+/// cannot be, since a muscle in them has none; a group has none if none of its muscles has.
+/// @param silent  muscles without an electrode
+std::vector<std::string> withoutElectrode(const EncompassingModel& model,
+                                          const std::vector<std::string>& silent);
+
 /// addNuisances, and every entry but those whose ids are in `without`.
 /// @param without  ids of entries or of candidates, or their long names (effect_names.h)
 /// @param formula  if not empty, also addFormula of it, on the coordinate `axis`

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bio/discovery/contradiction.h"
 #include "bio/discovery/effect_size.h"
 #include "bio/discovery/musculoskeletal_problem.h"
 #include "bio/discovery/predicted_experiments.h"
@@ -31,6 +32,7 @@ struct DiscoveryRequest {
 /// Findings of a search, with everything that follows from them.
 struct DiscoveryResult {
   std::unique_ptr<MusculoskeletalProblem> data;
+  InputAgreement inputs;  ///< of the whole trials
   info::discover::SteppedVerdict found;
 
   /// Where the model fails at once, if the search of whole trials ended with an unknown effect.
@@ -52,6 +54,10 @@ struct DiscoveryResult {
 };
 
 /// Searches for effects that a model lacks, repairs the model and replays every trial with it.
+///
+/// A recording that contradicts itself (inputAgreement() with remedies) is not searched: only the
+/// base model is fitted, the finding is `unknown`, and the sentence says what would make it agree.
+/// If the excitations are unrelated to the motion, no effect has a probability.
 ///
 /// The search is info::discover::searchTrials on a MusculoskeletalProblem. If it ends with an
 /// unknown effect and the model fails at a position at once (positionBreak), it is repeated with

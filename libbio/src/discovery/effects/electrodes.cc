@@ -127,6 +127,38 @@ std::vector<std::string> unsaturated(const EncompassingModel& model,
   return ids;
 }
 
+std::vector<std::string> withoutElectrode(const EncompassingModel& model,
+                                          const std::vector<std::string>& silent) {
+  const auto isSilent = [&](const std::string& muscle) {
+    return std::find(silent.begin(), silent.end(), muscle) != silent.end();
+  };
+  std::vector<std::string> ids, silentGroups;
+  forMusclesAndGroups(model, [&](const std::string& name, const std::vector<std::string>& muscles) {
+    if (!std::all_of(muscles.begin(), muscles.end(), isSilent)) return;
+    ids.push_back("gain_" + name);
+    ids.push_back(saturationId(name));
+  });
+  const auto& muscles = model.system().muscles();
+  for (const MuscleGroup& group : model.groups()) {
+    if (std::all_of(group.muscles.begin(), group.muscles.end(),
+                    [&](std::size_t i) { return isSilent(muscles[i].name); }))
+      silentGroups.push_back(group.name);
+  }
+  for (const std::string& silentGroup : silentGroups) {
+    for (const MuscleGroup& other : model.groups()) {
+      ids.push_back(fmt::format("crosstalk_{}_{}", silentGroup, other.name));
+      ids.push_back(fmt::format("crosstalk_{}_{}", other.name, silentGroup));
+    }
+  }
+  for (std::size_t i = 0; i < muscles.size(); ++i) {
+    for (std::size_t k = i + 1; k < muscles.size(); ++k) {
+      if (isSilent(muscles[i].name) || isSilent(muscles[k].name))
+        ids.push_back(fmt::format("swap_{}_{}", muscles[i].name, muscles[k].name));
+    }
+  }
+  return ids;
+}
+
 void addElectrodeGains(EncompassingModel& model) {
   const auto add = [&](const std::string& id, const std::vector<std::string>& muscles,
                        const std::string& name, const std::string& sentence,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -81,6 +82,9 @@ struct Estimate {
   double priorZ = 0;     ///< (value − nominal)/prior standard deviation; of the logarithm if the
                          ///< prior is log-normal
   bool atBound = false;  ///< within 1e-6 of its range of a bound
+  /// RMS change of the fitted trials' outputs between its nominal value and this one, linear in its
+  /// coordinate [σ of the outputs]; NaN: not computed
+  double moves = NAN;
 };
 
 /// A hypothesis that was fitted and compared.
@@ -230,6 +234,12 @@ using WarmStart = std::shared_ptr<const SearchMemory>;
 ///   the search after all fits
 /// @throws std::invalid_argument if the data break a rule of DiscoveryProblem
 Verdict run(const DiscoveryProblem& data, const Options& options = {}, WarmStart* draft = nullptr);
+
+/// The verdict where no search makes sense, since the recording is in error: `unknown`, with the
+/// noise of the recording and the errors of the nominal model. Nothing but initial states is
+/// fitted.
+/// @throws as run()
+Verdict withoutSearch(const DiscoveryProblem& data, const Options& options);
 
 /// Standard deviation of a trial's measurements about the simulation with the effects, at its
 /// times: √(σ_y² + Σ (dy/dA·σ_A)²), the sum being over the amplitudes A without their correlations.

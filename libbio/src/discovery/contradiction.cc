@@ -1,0 +1,340 @@
+#include "bio/discovery/contradiction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <numbers>
+#include <optional>
+
+#include "bio/analysis/inverse_dynamics.h"
+#include "bio/analysis/replay.h"
+#include "bio/model/units.h"
+#include "bio/observation/smoothed_motion.h"
+#include "info/dynamics/linear_table.h"
+
+namespace bio::discover {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double cutoff = 3;       ///< of the smoothed motion [Hz]
+constexpr double spacing = 0.01;   ///< of its samples [s]
+constexpr double shortest = 0.5;   ///< duration of a trial that can be judged [s]
+constexpr double ends = 0.05;      ///< share of a trial that is left out on either side
+constexpr double farthest = 2;     ///< shift of the excitations [s], at most a third of a trial
+constexpr double nearest = 0.3;    ///< a smaller one is a delay
+constexpr double shiftStep = 0.1;  ///< [s]
+constexpr double tie = 0.05;       ///< difference of correlations that says nothing
+
+/// What is compared of a trial, on a grid of times.
+struct Recorded {
+  std::string name;
+  std::vector<double> times;
+  MatrixXd q;  ///< the system's coordinates × times
+  MatrixXd
+      moment;  ///< measured ones, coordinates in question × times; 0 where the coordinate is free
+  ExcitationSignal excitation;
+  SimulationOptions simulation;
+};
+
+/// A change of one recording.
+using Change = std::function<void(Recorded&)>;
+
+VectorXd onGrid(const MeasuredChannel& channel, const std::vector<double>& times) {
+  const std::vector<double> at(channel.times.begin(), channel.times.end());
+  const SmoothedMotion smooth = smoothed(at, channel.values, cutoff, spacing);
+  VectorXd values(static_cast<Index>(times.size()));
+  for (std::size_t k = 0; k < times.size(); ++k)
+    values[static_cast<Index>(k)] = info::linearAt(smooth.times, times[k]).value(smooth.values);
+  return values;
+}
+
+ExcitationSignal noExcitation(const ExcitationSignal& like) {
+  return {{0}, MatrixXd::Zero(1, like.numMuscles())};
+}
+
+ExcitationSignal shifted(const ExcitationSignal& signal, double by) {
+  std::vector<double> times = signal.times();
+  MatrixXd values(static_cast<Index>(times.size()), signal.numMuscles());
+  std::size_t hint = 0;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    signal.at(times[k], hint, values.row(static_cast<Index>(k)).transpose());
+    times[k] += by;
+  }
+  return {std::move(times), std::move(values)};
+}
+
+class Comparison {
+ public:
+  Comparison(const Model& model, const SystemOptions& options,
+             const std::vector<std::string>& inQuestion)
+      : system_(model, options),
+        driven_(MusculoskeletalSystem(model, options).withAllPrescribed()),
+        inQuestion_(inQuestion) {
+    const auto& all = system_.skeleton().coordinates();
+    for (const std::string& name : inQuestion) {
+      const auto at = std::find_if(all.begin(), all.end(),
+                                   [&](const auto& coordinate) { return coordinate.name == name; });
+      if (at != all.end()) rows_.push_back(static_cast<Index>(at - all.begin()));
+    }
+  }
+
+  bool isPossible() const { return system_.numMuscles() > 0 && rows_.size() == inQuestion_.size(); }
+  const std::vector<Index>& rows() const { return rows_; }
+  bool isFree(std::size_t i) const { return !system_.isPrescribed(static_cast<int>(rows_[i])); }
+  bool isRotation(std::size_t i) const {
+    return system_.skeleton().coordinates()[static_cast<std::size_t>(rows_[i])].isRotation;
+  }
+
+  /// The recorded motion; nothing if it is not known throughout.
+  std::optional<Recorded> recorded(const Trial& trial) const {
+    std::vector<const MeasuredChannel*> motion, moments;
+    double first = trial.times[0], last = trial.times[trial.times.size() - 1];
+    const auto take = [&](const Observable& what, std::vector<const MeasuredChannel*>& list) {
+      const MeasuredChannel* channel = trial.measurementOf(what);
+      list.push_back(channel);
+      if (!channel || channel->times.size() < 4) return false;
+      first = std::max(first, channel->times[0]);
+      last = std::min(last, channel->times[channel->times.size() - 1]);
+      return true;
+    };
+    const auto& all = system_.skeleton().coordinates();
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (system_.isPrescribed(static_cast<int>(k)))
+        motion.push_back(nullptr);
+      else if (!take(ofCoordinate(all[k].name), motion))
+        return {};
+    }
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (isFree(i))
+        moments.push_back(nullptr);
+      else if (!take({Observable::Kind::moment, inQuestion_[i], 0}, moments))
+        return {};
+    }
+    if (!(last - first > shortest)) return {};
+    Recorded result;
+    result.name = std::filesystem::path(trial.file).filename().string();
+    for (double t = first; t < last; t += spacing) result.times.push_back(t);
+    const auto n = static_cast<Index>(result.times.size());
+    result.q = courses(prescribedMotionOf(trial, system_), result.times);
+    for (std::size_t k = 0; k < motion.size(); ++k)
+      if (motion[k]) result.q.row(static_cast<Index>(k)) = onGrid(*motion[k], result.times);
+    result.moment = MatrixXd::Zero(static_cast<Index>(rows_.size()), n);
+    for (std::size_t i = 0; i < moments.size(); ++i)
+      if (moments[i]) result.moment.row(static_cast<Index>(i)) = onGrid(*moments[i], result.times);
+    RecordedTrial inputs = recordedTrial(trial, system_, {});
+    result.excitation = std::move(inputs.excitation);
+    result.simulation = std::move(inputs.simulation);
+    return result;
+  }
+
+  /// Mean correlation over the coordinates in question; NaN if it cannot be told.
+  double correlation(const std::vector<Recorded>& trials) const {
+    const auto n = static_cast<Index>(rows_.size());
+    VectorXd both = VectorXd::Zero(n), made = both, required = both;
+    try {
+      for (const Recorded& trial : trials) {
+        const MatrixXd without = reactions(trial, noExcitation(trial.excitation));
+        const MatrixXd with = reactions(trial, trial.excitation);
+        const auto skipped =
+            static_cast<Index>(ends * static_cast<double>(std::min(with.cols(), without.cols())));
+        const Index count = std::min(with.cols(), without.cols()) - 2 * skipped;
+        for (Index i = 0; i < n; ++i) {
+          const auto part = [&](const MatrixXd& from) {
+            VectorXd row = from.row(i).segment(skipped, count).transpose();
+            row.array() -= row.mean();
+            return row;
+          };
+          const VectorXd need = part(without) + part(trial.moment);
+          const VectorXd muscles = part(without) - part(with);
+          both[i] += need.dot(muscles);
+          made[i] += muscles.squaredNorm();
+          required[i] += need.squaredNorm();
+        }
+      }
+    } catch (const std::exception&) {
+      return NAN;  // the model cannot make this motion
+    }
+    return (both.array() / (made.array() * required.array()).sqrt()).mean();
+  }
+
+ private:
+  MatrixXd courses(const PrescribedMotion& motion, const std::vector<double>& times) const {
+    const Index n = system_.skeleton().numCoordinates();
+    MatrixXd q = MatrixXd::Zero(n, static_cast<Index>(times.size()));
+    VectorXd at = VectorXd::Zero(n), rate = at, acceleration = at;
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      motion.place(times[k], at, rate, acceleration);
+      q.col(static_cast<Index>(k)) = at;
+    }
+    return q;
+  }
+
+  /// Reactions of the coordinates in question, at the grid's times.
+  MatrixXd reactions(const Recorded& trial, const ExcitationSignal& excitation) const {
+    const Trajectory motion =
+        inverseDynamicsOf(driven_, excitation, trial.times, trial.q, trial.simulation);
+    if (motion.outcome != Outcome::completed) throw std::domain_error(motion.why);
+    const auto count = static_cast<Index>(
+        std::min(trial.times.size(), static_cast<std::size_t>(motion.reaction.cols())));
+    MatrixXd result(static_cast<Index>(rows_.size()), count);
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const VectorXd row = motion.reaction.row(rows_[i]);
+      for (Index k = 0; k < count; ++k)
+        result(static_cast<Index>(i), k) =
+            info::linearAt(motion.time, trial.times[static_cast<std::size_t>(k)]).value(row);
+    }
+    return result;
+  }
+
+  MusculoskeletalSystem system_, driven_;
+  std::vector<std::string> inQuestion_;
+  std::vector<Index> rows_;  ///< of the coordinates in question
+};
+
+/// The search for what would make a recording agree with itself.
+class Remedies {
+ public:
+  Remedies(const Comparison& comparison, const std::vector<std::string>& names,
+           const std::vector<Recorded>& trials)
+      : comparison_(comparison), names_(names), trials_(trials) {}
+
+  void run(InputAgreement& result) {
+    for (std::size_t i = 0; i < names_.size(); ++i) ofCoordinate(i);
+    ofTime();
+    ofTrials();
+    std::stable_sort(found_.begin(), found_.end(),
+                     [](const Found& a, const Found& b) { return a.correlation > b.correlation; });
+    for (const Found& found : found_) {
+      const bool helps = found.correlation > InputAgreement::largeEnough &&
+                         found.correlation > result.correlation + InputAgreement::gain;
+      if (helps && found.correlation > found_.front().correlation - tie)
+        result.remedies.push_back(found.clause);
+    }
+    if (!result.remedies.empty()) result.remedied = found_.front().correlation;
+  }
+
+ private:
+  struct Found {
+    std::string clause;
+    double correlation;
+  };
+
+  void consider(std::string clause, const std::vector<Recorded>& changed) {
+    const double correlation = comparison_.correlation(changed);
+    if (std::isfinite(correlation)) found_.push_back({std::move(clause), correlation});
+  }
+  void considerAll(std::string clause, const Change& change) {
+    std::vector<Recorded> changed = trials_;
+    for (Recorded& trial : changed) change(trial);
+    consider(std::move(clause), changed);
+  }
+
+  void ofCoordinate(std::size_t i) {
+    const Index row = comparison_.rows()[i];
+    const std::string& name = names_[i];
+    considerAll(fmt::format("the sign of {} is reversed", name),
+                [&](Recorded& trial) { trial.q.row(row) *= -1; });
+    if (!comparison_.isFree(i))
+      considerAll(fmt::format("the sign of {}.moment is reversed", name),
+                  [&](Recorded& trial) { trial.moment.row(static_cast<Index>(i)) *= -1; });
+    if (!comparison_.isRotation(i)) return;
+    considerAll(
+        fmt::format("{} is 180 degrees less what was recorded", name),
+        [&](Recorded& trial) { trial.q.row(row) = std::numbers::pi - trial.q.row(row).array(); });
+    double largest = 0;
+    for (const Recorded& trial : trials_)
+      largest = std::max(largest, trial.q.row(row).cwiseAbs().maxCoeff());
+    if (degreesPerRadian * largest < 2 * std::numbers::pi)
+      considerAll(fmt::format("{} is in radians, not in degrees", name),
+                  [&](Recorded& trial) { trial.q.row(row) *= degreesPerRadian; });
+  }
+
+  /// The excitations, or the motion, of all trials are late.
+  void ofTime() {
+    double duration = HUGE_VAL;
+    for (const Recorded& trial : trials_)
+      duration = std::min(duration, trial.times.back() - trial.times.front());
+    const double most = std::min(farthest, duration / 3);
+    std::optional<Found> best;
+    for (const double direction : {1.0, -1.0}) {
+      for (double by = nearest; by < most; by += shiftStep) {
+        std::vector<Recorded> changed = trials_;
+        for (Recorded& trial : changed) {
+          trial.excitation = shifted(trial.excitation, direction * by);
+          const auto lost = static_cast<std::size_t>(by / spacing);
+          const std::size_t kept = trial.times.size() - lost;
+          const std::size_t from = direction > 0 ? lost : 0;
+          trial.times = {trial.times.begin() + static_cast<std::ptrdiff_t>(from),
+                         trial.times.begin() + static_cast<std::ptrdiff_t>(from + kept)};
+          trial.q =
+              MatrixXd(trial.q.middleCols(static_cast<Index>(from), static_cast<Index>(kept)));
+          trial.moment =
+              MatrixXd(trial.moment.middleCols(static_cast<Index>(from), static_cast<Index>(kept)));
+        }
+        const double correlation = comparison_.correlation(changed);
+        if (best && !(correlation > best->correlation)) continue;
+        best = Found{
+            fmt::format("the excitations are {:.1f} s {}", by, direction > 0 ? "early" : "late"),
+            correlation};
+      }
+    }
+    if (best && std::isfinite(best->correlation)) found_.push_back(*best);
+  }
+
+  /// Excitations of another trial.
+  void ofTrials() {
+    if (trials_.size() < 2) return;
+    std::vector<Recorded> changed = trials_;
+    std::string words;
+    for (std::size_t i = 0; i < trials_.size(); ++i) {
+      double most = -HUGE_VAL;
+      std::size_t best = i;
+      for (std::size_t k = 0; k < trials_.size(); ++k) {
+        Recorded trial = trials_[i];
+        trial.excitation = trials_[k].excitation;
+        const double correlation = comparison_.correlation({trial});
+        if (!(correlation > most)) continue;
+        most = correlation;
+        best = k;
+      }
+      if (best == i) continue;
+      changed[i].excitation = trials_[best].excitation;
+      words += fmt::format("{}the motion of {} belongs to the excitations of {}",
+                           words.empty() ? "" : ", ", trials_[i].name, trials_[best].name);
+    }
+    if (!words.empty()) consider(words, changed);
+  }
+
+  const Comparison& comparison_;
+  const std::vector<std::string>& names_;
+  const std::vector<Recorded>& trials_;
+  std::vector<Found> found_;
+};
+
+}  // namespace
+
+InputAgreement inputAgreement(const Model& model, const SystemOptions& system,
+                              const CoordinateNames& coordinates,
+                              const std::vector<Trial>& trials) {
+  InputAgreement result;
+  const Comparison comparison(model, system, coordinates.all);
+  if (!comparison.isPossible()) return result;
+  std::vector<Recorded> recorded;
+  for (const Trial& trial : trials) {
+    auto one = comparison.recorded(trial);
+    if (!one) return result;
+    recorded.push_back(std::move(*one));
+  }
+  result.correlation = comparison.correlation(recorded);
+  if (result.correlation < InputAgreement::tooSmall)
+    Remedies(comparison, coordinates.all, recorded).run(result);
+  return result;
+}
+
+}  // namespace bio::discover

@@ -1,0 +1,147 @@
+#include "bio/discovery/contradiction.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "bio/analysis/inverse_dynamics.h"
+#include "bio/analysis/replay.h"
+#include "bio/opensim/osim_file.h"
+
+namespace bio::discover {
+namespace {
+
+using Eigen::Index;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Two recordings of the shipped elbow with its angle.
+struct Recordings {
+  explicit Recordings(bool prescribed = false) {
+    if (prescribed) options.prescribed = {"elbow_flexion"};
+    for (const char* file : {"train_1.sto", "train_2.sto"}) {
+      TrialOptions read;
+      read.prescribed = options.prescribed;
+      trials.push_back(readTrial(folder / "emg_data/hidden_a" / file, model, read));
+    }
+  }
+  InputAgreement agreement() const {
+    return inputAgreement(model, options, "elbow_flexion", trials);
+  }
+
+  std::filesystem::path folder = FISHERHILL_SOURCE_DIR;
+  Model model = readOsim(folder / "models/elbow8.osim");
+  SystemOptions options;
+  std::vector<Trial> trials;
+};
+
+TEST(InputAgreement, IsLargeWhereExcitationsAndMotionBelongTogether) {
+  const InputAgreement agreement = Recordings().agreement();
+  EXPECT_GT(agreement.correlation, InputAgreement::tooSmall);
+  EXPECT_LE(agreement.correlation, 1);
+  EXPECT_THAT(agreement.remedies, IsEmpty());
+}
+
+TEST(InputAgreement, DoesNotDependOnACommonFactorOfTheExcitations) {
+  Recordings recordings;
+  const double before = recordings.agreement().correlation;
+  for (Trial& trial : recordings.trials) trial.excitations *= 0.5;
+  EXPECT_NEAR(recordings.agreement().correlation, before, 0.1);
+}
+
+TEST(InputAgreement, NamesAReversedSign) {
+  Recordings recordings;
+  for (Trial& trial : recordings.trials) trial.measured.front().values *= -1;
+  EXPECT_THAT(recordings.agreement().remedies,
+              ElementsAre("the sign of elbow_flexion is reversed"));
+}
+
+TEST(InputAgreement, NamesASupplement) {
+  Recordings recordings;
+  for (Trial& trial : recordings.trials) {
+    Eigen::VectorXd& angle = trial.measured.front().values;
+    angle = 3.14159265358979 - angle.array();
+  }
+  EXPECT_THAT(recordings.agreement().remedies, ElementsAre(HasSubstr("180 degrees less")));
+}
+
+TEST(InputAgreement, NamesAWrongUnit) {
+  Recordings recordings;
+  for (Trial& trial : recordings.trials) trial.measured.front().values /= 57.2957795;
+  EXPECT_THAT(recordings.agreement().remedies,
+              ElementsAre("elbow_flexion is in radians, not in degrees"));
+}
+
+TEST(InputAgreement, NamesAShift) {
+  for (const Index rows : {80, -80}) {
+    Recordings recordings;
+    for (Trial& trial : recordings.trials) {
+      // what is measured at row k belongs to row k + rows
+      MeasuredChannel& angle = trial.measured.front();
+      const Index n = angle.values.size() - 80;
+      angle.values = Eigen::VectorXd(rows > 0 ? angle.values.tail(n) : angle.values.head(n));
+      angle.times = Eigen::VectorXd(rows > 0 ? angle.times.head(n) : angle.times.tail(n));
+    }
+    EXPECT_THAT(recordings.agreement().remedies,
+                ElementsAre(rows > 0 ? "the excitations are 0.8 s late"
+                                     : "the excitations are 0.8 s early"));
+  }
+}
+
+TEST(InputAgreement, NamesExcitationsOfAnotherTrial) {
+  Recordings recordings;
+  std::swap(recordings.trials[0].excitations, recordings.trials[1].excitations);
+  EXPECT_THAT(
+      recordings.agreement().remedies,
+      ElementsAre("the motion of train_1.sto belongs to the excitations of train_2.sto, the "
+                  "motion of train_2.sto belongs to the excitations of train_1.sto"));
+}
+
+TEST(InputAgreement, SaysNothingOfMusclesThatDoNothing) {
+  Recordings recordings;
+  for (Trial& trial : recordings.trials) trial.excitations.setZero();
+  const InputAgreement agreement = recordings.agreement();
+  EXPECT_FALSE(agreement.correlation < InputAgreement::tooSmall);
+  EXPECT_THAT(agreement.remedies, IsEmpty());
+}
+
+/// What a dynamometer reads while it makes the motion.
+Recordings onDynamometer() {
+  Recordings recordings(true);
+  const MusculoskeletalSystem system(recordings.model, recordings.options);
+  for (Trial& trial : recordings.trials) {
+    const RecordedTrial inputs = recordedTrial(trial, system, {});
+    StartPoint start;
+    start.q = startCoordinates(trial, system, {});
+    const Trajectory motion =
+        simulate(system, inputs.excitation, inputs.startAt(system, start), inputs.simulation);
+    const auto n = static_cast<Index>(motion.time.size());
+    trial.measured.push_back({{Observable::Kind::moment, "elbow_flexion", 0},
+                              Eigen::VectorXd::Map(motion.time.data(), n),
+                              -motion.reaction.row(0).transpose()});
+  }
+  return recordings;
+}
+
+TEST(InputAgreement, IsOneOnADynamometer) {
+  const InputAgreement agreement = onDynamometer().agreement();
+  EXPECT_GT(agreement.correlation, 0.98);
+  EXPECT_THAT(agreement.remedies, IsEmpty());
+}
+
+TEST(InputAgreement, NamesAReversedMoment) {
+  Recordings recordings = onDynamometer();
+  for (Trial& trial : recordings.trials) trial.measured.back().values *= -1;
+  EXPECT_THAT(recordings.agreement().remedies,
+              testing::Contains("the sign of elbow_flexion.moment is reversed"));
+}
+
+TEST(InputAgreement, IsNotToldWithoutTheMotion) {
+  Recordings recordings;
+  recordings.trials.front().measured.clear();
+  EXPECT_TRUE(std::isnan(recordings.agreement().correlation));
+}
+
+}  // namespace
+}  // namespace bio::discover
