@@ -73,6 +73,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/model/model.h
   include/bio/review/model_review.h
   include/bio/model/nearest_name.h
+  include/bio/model/units.h
   include/bio/muscle/activation_law.h
   include/bio/muscle/activation_variant.h
   include/bio/muscle/bezier_curve.h

@@ -2,18 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "arguments/columns.h"
 #include "arguments/file_name.h"
-#include "systems.h"
 #include "bio/analysis/compare_muscles.h"
 #include "bio/analysis/coordinate_curve.h"
 #include "bio/analysis/replay.h"
+#include "bio/model/units.h"
 #include "bio/opensim/external_loads.h"
 #include "bio/simulation/integrator_names.h"
 #include "docstrings.h"
 #include "interruptible.h"
+#include "systems.h"
 
 namespace python {
 namespace {
@@ -235,7 +234,8 @@ py::list compareMuscles(const bio::Model& model, const bio::Trial& trial,
                         const std::map<std::string, double>& lock, const std::string& integrator,
                         std::optional<double> step) {
   const SystemChoice choice = systemChoice(model, {trial}, coordinate, lock, integrator, step);
-  if (!integrator.starts_with("vi")) {
+  const auto known = bio::integratorNamed(integrator);
+  if (!known || !bio::isVariational(*known)) {
     throw std::invalid_argument(fmt::format(
         "integrator '{}', must be vi or vi-left, which have sensitivities", integrator));
   }
@@ -272,7 +272,7 @@ void defineComparisons(py::module_& module) {
       py::kw_only(),
       "classes"_a = std::vector<std::string>{"Schutte1993", "Thelen2003", "Millard2012",
                                              "DeGrooteFregly2016", "RigidTendon"},
-      "noise"_a = std::numbers::pi / 180, "initial"_a = std::map<std::string, double>());
+      "noise"_a = bio::radiansPerDegree, "initial"_a = std::map<std::string, double>());
 }
 
 }  // namespace python

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <variant>
 
@@ -11,14 +10,13 @@
 #include "bio/analysis/sensitivity_study.h"
 #include "bio/design/design_setup.h"
 #include "bio/design/separating_design.h"
+#include "bio/model/units.h"
 #include "docstrings.h"
 #include "interruptible.h"
 #include "systems.h"
 
 namespace python {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 /// One number for all free coordinates, or by name.
 using OneOrNamed = std::variant<double, std::map<std::string, double>>;
@@ -116,8 +114,8 @@ std::vector<std::string> namesOf(const std::vector<bio::CoordinateLimits>& limit
 bio::Trial readAgain(const bio::Table& table, const bio::Trial& trial, const bio::Model& model) {
   bio::TrialOptions options{.experimentalConditions = true};
   for (const bio::MeasuredChannel& course : trial.prescribed) {
-    if (course.times.size() > 1) options.prescribed.push_back(course.what.of);
-    if (course.times.size() == 1) options.held[course.what.of] = course.values[0];
+    if (course.times.size() > 1) options.prescribed.push_back(course.what.object);
+    if (course.times.size() == 1) options.held[course.what.object] = course.values[0];
   }
   return trialOf(table, "designed experiment", model, options);
 }
@@ -169,7 +167,7 @@ py::object designed(const bio::ExperimentDesign& search, const bio::DesignResult
                  "trial"_a = readAgain(table, e.trial, model), "times"_a = e.measuredTimes,
                  "observed"_a = namesOf(question.observed), "predicted"_a = flat(e.measured),
                  "predicted_before"_a = flat(found.before.measured),
-                 "surprise"_a = flat(search.surpriseAt(e)),
+                 "surprise"_a = flat(search.allowanceAt(e)),
                  "bound_over_time"_a = search.boundOverTime(e),
                  "bound_over_time_before"_a = search.boundOverTime(found.before),
                  "coordinates"_a = namesOf(limits), "lowest"_a = ofRange(&bio::MotionRange::lowest),
@@ -193,7 +191,7 @@ py::object design(const bio::Model& model, const bio::Trial& trial,
                   const OneOrNamed& torque, double torqueRate,
                   const std::vector<std::string>& excite, double excitationMax,
                   double excitationRate, const Range& range, const OneOrNamed& speed,
-                  double surprise, double knots, int candidates, int generations, int iterations,
+                  double robustness, double knots, int candidates, int generations, int iterations,
                   int monteCarlo, std::uint64_t seed, int threads,
                   const std::map<std::string, double>& initial, const Names& coordinate,
                   const std::map<std::string, double>& lock, const std::string& integrator,
@@ -220,7 +218,7 @@ py::object design(const bio::Model& model, const bio::Trial& trial,
     catalogue.emplace(model, *system, bio::StartPoint{start, {}});
     question.observed = inputs.observed(model, *system);
     bio::DesignLimits limits = inputs.limits(*system);
-    limits.surprise = surprise;
+    limits.robustness = robustness;
     const bio::SimulationOptions simulation = during(trial, choice.simulation());
     search.emplace(*system, *catalogue, catalogue->nominal(), trial, simulation,
                    bio::designQuestion(*catalogue, {parameters, nuisance, priors, prior}, question),
@@ -325,19 +323,19 @@ void defineDesign(py::module_& module) {
   defineWithChoice(module, "design", &design, docstrings::design, "model"_a, "trial"_a,
                    "parameters"_a, py::kw_only(), "nuisance"_a = List(), "priors"_a = false,
                    "prior"_a = Given(), "criterion"_a = "E", "observe"_a = Given(),
-                   "noise"_a = 0.5 * degree, "rate"_a = 100.0, "torque"_a = 10.0,
+                   "noise"_a = 0.5 * bio::radiansPerDegree, "rate"_a = 100.0, "torque"_a = 10.0,
                    "torque_rate"_a = 50.0, "excite"_a = List(), "excitation_max"_a = 0.5,
-                   "excitation_rate"_a = 2.0, "range"_a = py::none(), "speed"_a = 500 * degree,
-                   "surprise"_a = 0.5, "knots"_a = 0.3, "candidates"_a = 100, "generations"_a = 100,
-                   "iterations"_a = 10, "monte_carlo"_a = 0, "seed"_a = 1, "threads"_a = 1,
-                   "initial"_a = Given());
+                   "excitation_rate"_a = 2.0, "range"_a = py::none(),
+                   "speed"_a = 500 * bio::radiansPerDegree, "surprise"_a = 0.5, "knots"_a = 0.3,
+                   "candidates"_a = 100, "generations"_a = 100, "iterations"_a = 10,
+                   "monte_carlo"_a = 0, "seed"_a = 1, "threads"_a = 1, "initial"_a = Given());
   defineWithChoice(module, "separate", &separate, docstrings::separate, "model"_a, "trial"_a,
                    "first"_a, "second"_a, py::kw_only(), "size"_a = Given(), "observe"_a = Given(),
-                   "noise"_a = 0.5 * degree, "rate"_a = 100.0, "torque"_a = 10.0,
+                   "noise"_a = 0.5 * bio::radiansPerDegree, "rate"_a = 100.0, "torque"_a = 10.0,
                    "torque_rate"_a = 50.0, "excite"_a = List(), "excitation_max"_a = 0.5,
-                   "excitation_rate"_a = 2.0, "range"_a = py::none(), "speed"_a = 500 * degree,
-                   "knots"_a = 0.3, "candidates"_a = 100, "generations"_a = 100, "seed"_a = 1,
-                   "threads"_a = 1, "initial"_a = Given());
+                   "excitation_rate"_a = 2.0, "range"_a = py::none(),
+                   "speed"_a = 500 * bio::radiansPerDegree, "knots"_a = 0.3, "candidates"_a = 100,
+                   "generations"_a = 100, "seed"_a = 1, "threads"_a = 1, "initial"_a = Given());
 }
 
 }  // namespace python

@@ -1,15 +1,15 @@
 #include <fmt/format.h>
 
-#include <numbers>
 #include <optional>
 #include <set>
 
 #include "arguments/columns.h"
-#include "systems.h"
 #include "bio/design/dynamometer_question.h"
+#include "bio/model/units.h"
 #include "bio/skeleton/free_coordinates.h"
 #include "docstrings.h"
 #include "interruptible.h"
+#include "systems.h"
 
 namespace python {
 namespace {
@@ -57,7 +57,7 @@ py::object designOnDynamometer(const bio::Model& model, const std::string& coord
                                const Values& speeds, const Values& efforts, const Values& releases,
                                std::optional<double> releaseSpeed, const Values& loads,
                                int experiments, double momentNoise, double noise, double rate,
-                               double speed, double surprise, int threads,
+                               double speed, double robustness, int threads,
                                const std::map<std::string, double>& lock,
                                const std::string& integrator, std::optional<double> step) {
   const bio::Coordinate& moved = bio::findCoordinate(model, coordinate);
@@ -78,7 +78,7 @@ py::object designOnDynamometer(const bio::Model& model, const std::string& coord
   question.angleNoise = noise;
   question.rate = rate;
   question.fastest = speed;
-  question.surprise = surprise;
+  question.robustness = robustness;
   question.threads = threads;
   question = bio::withDefaults(std::move(question), moved, releaseSpeed);
   bio::DynamometerPlan plan;
@@ -110,15 +110,15 @@ py::object designOnDynamometer(const bio::Model& model, const std::string& coord
 }  // namespace
 
 void defineDynamometer(py::module_& module) {
-  constexpr double degree = std::numbers::pi / 180;
-  module.def(
-      "design_on_dynamometer", &designOnDynamometer, docstrings::design_on_dynamometer, "model"_a,
-      "coordinate"_a, "parameters"_a, py::kw_only(), "nuisance"_a = std::vector<std::string>(),
-      "kinds"_a = std::vector<std::string>(), "angles"_a = Values(), "speeds"_a = Values(),
-      "efforts"_a = Values(), "releases"_a = Values(), "release_speed"_a = py::none(),
-      "loads"_a = Values(), "experiments"_a = 4, "moment_noise"_a = 0.5, "noise"_a = 0.5 * degree,
-      "rate"_a = 100.0, "speed"_a = 500 * degree, "surprise"_a = 0.5, "threads"_a = 1,
-      "lock"_a = std::map<std::string, double>(), "integrator"_a = "vi", "step"_a = py::none());
+  module.def("design_on_dynamometer", &designOnDynamometer, docstrings::design_on_dynamometer,
+             "model"_a, "coordinate"_a, "parameters"_a, py::kw_only(),
+             "nuisance"_a = std::vector<std::string>(), "kinds"_a = std::vector<std::string>(),
+             "angles"_a = Values(), "speeds"_a = Values(), "efforts"_a = Values(),
+             "releases"_a = Values(), "release_speed"_a = py::none(), "loads"_a = Values(),
+             "experiments"_a = 4, "moment_noise"_a = 0.5, "noise"_a = 0.5 * bio::radiansPerDegree,
+             "rate"_a = 100.0, "speed"_a = 500 * bio::radiansPerDegree, "surprise"_a = 0.5,
+             "threads"_a = 1, "lock"_a = std::map<std::string, double>(), "integrator"_a = "vi",
+             "step"_a = py::none());
 }
 
 }  // namespace python

@@ -4,13 +4,13 @@
 
 #include "arguments/columns.h"
 #include "arguments/file_name.h"
-#include "systems.h"
 #include "bio/emg/emg_config.h"
 #include "bio/emg/emg_recordings.h"
 #include "bio/emg/emg_trial.h"
 #include "bio/tables/recorded_file.h"
 #include "docstrings.h"
 #include "interruptible.h"
+#include "systems.h"
 
 namespace python {
 namespace {
@@ -42,9 +42,9 @@ py::object emg(const std::variant<FileName, std::vector<FileName>>& recordings,
   interruptible([&](const std::atomic<bool>&) {
     const bio::EmgConfigFile file = bio::readEmgConfig(config.text);
     joined = bio::readRecordings(file, files);
-    const bio::EmgConfig of = bio::emgConfigFor(file, joined.recording, bio::markerNames(file));
-    result = bio::excitationsFromEmg(joined.recording, of);
-    trial = bio::excitationTable(result, of);
+    const bio::EmgConfig config = bio::emgConfigFor(file, joined.recording, bio::markerNames(file));
+    result = bio::excitationsFromEmg(joined.recording, config);
+    trial = bio::excitationTable(result, config);
     if (!write.text.empty()) bio::writeTable(trial, write.text);
   });
   py::dict offsets;

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
-#include "systems.h"
 #include "bio/analysis/ensemble_statistics.h"
 #include "bio/analysis/trial_ensemble.h"
 #include "bio/opensim/external_loads.h"
 #include "docstrings.h"
 #include "info/parallel_for.h"
 #include "interruptible.h"
+#include "systems.h"
 
 namespace python {
 namespace {
@@ -178,8 +178,8 @@ py::object ensemble(const bio::Model& model, const bio::Trial& trial,
         bio::beginningOf(trial, model, system, initial).point, options);
     rows = rowsOf(*made, first, seed, threads, goOn);
     if (!sobol || !goOn) return;
-    const auto of = bio::ensembleOutputs()[bio::ensembleOutputNamed(output)].of;
-    indices = bio::sobolOf(ofEachRun(rows.runs, of),
+    const auto valueOf = bio::ensembleOutputs()[bio::ensembleOutputNamed(output)].of;
+    indices = bio::sobolOf(ofEachRun(rows.runs, valueOf),
                            static_cast<int>(made->laws().parameters.size()), seed);
   });
   return resultOf(*made, rows, indices);

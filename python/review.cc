@@ -1,13 +1,13 @@
 #include "bio/review/model_review.h"
 
 #include "arguments/file_name.h"
-#include "systems.h"
 #include "bio/analysis/muscle_states.h"
 #include "bio/analysis/opensim_paths.h"
 #include "bio/path/length_jumps.h"
 #include "bio/review/trial_review.h"
 #include "docstrings.h"
 #include "interruptible.h"
+#include "systems.h"
 
 namespace python {
 namespace {
@@ -39,9 +39,8 @@ py::list lengthJumps(const bio::Model& model) {
   py::list list;
   for (const bio::LengthJump& jump : jumps) {
     list.append(results("muscle"_a = jump.muscle, "coordinate"_a = jump.coordinate,
-                        "value"_a = jump.value, "length"_a = jump.size,
-                        "moment_arm"_a = jump.arm, "conditional"_a = jump.conditional,
-                        "text"_a = bio::describe(jump)));
+                        "value"_a = jump.value, "length"_a = jump.size, "moment_arm"_a = jump.arm,
+                        "conditional"_a = jump.conditional, "text"_a = bio::describe(jump)));
   }
   return list;
 }
@@ -57,8 +56,8 @@ py::list openSimDifferences(const bio::Model& model) {
     list.append(results("muscle"_a = difference.muscle, "coordinate"_a = difference.coordinate,
                         "ellipsoids"_a = difference.ellipsoids, "length"_a = difference.length,
                         "length_at"_a = difference.lengthAt, "moment_arm"_a = difference.arm,
-                        "moment_arm_at"_a = difference.armAt, "apart"_a = apart,
-                        "jumps"_a = jumps, "text"_a = bio::describe(difference)));
+                        "moment_arm_at"_a = difference.armAt, "apart"_a = apart, "jumps"_a = jumps,
+                        "text"_a = bio::describe(difference)));
   }
   return list;
 }
@@ -91,8 +90,8 @@ void defineReviews(py::module_& module, py::class_<bio::Model>& model,
           docstrings::Model_review);
   trial.def(
       "review",
-      [](const bio::Trial& self, const bio::Model& of) {
-        return listOf(bio::reviewTrial(self, of));
+      [](const bio::Trial& self, const bio::Model& model) {
+        return listOf(bio::reviewTrial(self, model));
       },
       "model"_a, docstrings::Trial_review);
   module.def("length_jumps", &lengthJumps, "model"_a, docstrings::length_jumps);

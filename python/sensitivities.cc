@@ -2,12 +2,12 @@
 #include <fmt/ranges.h>
 
 #include <memory>
-#include <numbers>
 #include <variant>
 
 #include "bio/analysis/replay.h"
 #include "bio/analysis/sensitivity_study.h"
 #include "bio/calibration/trial_set.h"
+#include "bio/model/units.h"
 #include "bio/simulation/integrator_names.h"
 #include "bio/tables/different_trials.h"
 #include "docstrings.h"
@@ -332,7 +332,7 @@ void defineSensitivity(py::module_& module) {
   defineWithChoice(module, "list_parameters", &listParameters, docstrings::list_parameters,
                    "model"_a, py::kw_only());
   defineWithChoice(module, "sensitivity", &sensitivity, docstrings::sensitivity, "model"_a,
-                   "trials"_a, "parameters"_a, py::kw_only(), "noise"_a = std::numbers::pi / 180,
+                   "trials"_a, "parameters"_a, py::kw_only(), "noise"_a = bio::radiansPerDegree,
                    "observe"_a = std::map<std::string, double>(), "further_channels"_a = false,
                    "initial"_a = std::map<std::string, double>());
   defineWithChoice(module, "parameter_sweep", &parameterSweep, docstrings::parameter_sweep,
@@ -340,7 +340,7 @@ void defineSensitivity(py::module_& module) {
                    "initial"_a = std::map<std::string, double>());
   defineWithChoice(module, "profile_likelihood", &profileLikelihood, docstrings::profile_likelihood,
                    "model"_a, "trials"_a, "parameters"_a, "profile"_a, py::kw_only(),
-                   "noise"_a = std::numbers::pi / 180,
+                   "noise"_a = bio::radiansPerDegree,
                    "initial"_a = std::map<std::string, double>());
   defineWithChoice(module, "global_sensitivity", &globalSensitivity, docstrings::global_sensitivity,
                    "model"_a, "trials"_a, "parameters"_a, py::kw_only(), "method"_a = "both",
@@ -348,7 +348,7 @@ void defineSensitivity(py::module_& module) {
                    "initial"_a = std::map<std::string, double>());
   defineWithChoice(module, "cost_gradient", &costGradient, docstrings::cost_gradient, "model"_a,
                    "trials"_a, "parameters"_a, "values"_a = py::none(), py::kw_only(),
-                   "noise"_a = Noise(std::numbers::pi / 180), "priors"_a = false,
+                   "noise"_a = Noise(bio::radiansPerDegree), "priors"_a = false,
                    "own_start"_a = false, "threads"_a = 1);
 }
 

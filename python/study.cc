@@ -1,10 +1,10 @@
 #include <numbers>
 
 #include "arguments/file_name.h"
-#include "systems.h"
 #include "bio/skeleton/free_coordinates.h"
 #include "bio/tables/study_file.h"
 #include "docstrings.h"
+#include "systems.h"
 
 namespace python {
 namespace {
@@ -41,7 +41,7 @@ std::map<std::string, double> heldIn(const bio::Model& model, const std::vector<
   std::set<std::string> moments;
   for (const bio::Trial& trial : trials)
     for (const bio::MeasuredChannel& channel : trial.measured)
-      if (channel.what.kind == bio::Observable::Kind::moment) moments.insert(channel.what.of);
+      if (channel.what.kind == bio::Observable::Kind::moment) moments.insert(channel.what.object);
   const SystemChoice choice =
       systemChoice(model, trials, coordinates, lock, "vi", {}, !moments.empty());
   std::set<std::string> moving(choice.coordinates.begin(), choice.coordinates.end());

@@ -73,7 +73,7 @@ py::dict coursesOf(const std::vector<bio::MeasuredChannel>& motions) {
   py::dict courses;
   for (const bio::MeasuredChannel& channel : motions) {
     if (!channel.what.isCoordinate()) continue;
-    courses[channel.what.of.c_str()] = py::make_tuple(channel.times, channel.values);
+    courses[channel.what.object.c_str()] = py::make_tuple(channel.times, channel.values);
   }
   return courses;
 }
@@ -109,9 +109,9 @@ py::dict errorsOf(const bio::MusculoskeletalSystem& system, const bio::Trial& tr
   py::dict errors;
   for (const bio::MeasuredChannel& measured : trial.measured) {
     if (!measured.what.isCoordinate()) continue;
-    const bool isFree = system.skeleton().indexOf(measured.what.of) >= 0;
+    const bool isFree = system.skeleton().indexOf(measured.what.object) >= 0;
     if (isFree && motion.time.back() >= measured.times[0]) {
-      errors[measured.what.of.c_str()] = bio::compareWithMeasured(system, motion, measured).rms;
+      errors[measured.what.object.c_str()] = bio::compareWithMeasured(system, motion, measured).rms;
     }
   }
   return errors;
@@ -221,7 +221,7 @@ SystemChoice systemChoice(const bio::Model& model, const std::vector<bio::Trial>
       one ? std::vector<std::string>{*one} : std::get<std::vector<std::string>>(coordinate);
   std::set<std::string> given;
   for (const bio::Trial& trial : trials)
-    for (const bio::MeasuredChannel& course : trial.prescribed) given.insert(course.what.of);
+    for (const bio::MeasuredChannel& course : trial.prescribed) given.insert(course.what.object);
   std::set<std::string> otherwise = given;
   otherwise.insert(free.begin(), free.end());
   for (const auto& [name, value] : lock) otherwise.insert(name);
@@ -232,7 +232,7 @@ SystemChoice systemChoice(const bio::Model& model, const std::vector<bio::Trial>
     for (const auto& [name, value] : lock) locked.insert(name);
     for (const bio::Trial& trial : trials)
       for (const bio::MeasuredChannel& channel : trial.measured)
-        if (channel.what.isCoordinate()) measured.insert(channel.what.of);
+        if (channel.what.isCoordinate()) measured.insert(channel.what.object);
     free = bio::freeByDefault(model, locked, measured, mayBeNone || !prescribed.empty());
   }
   return {.coordinates = std::move(free),

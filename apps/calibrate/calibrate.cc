@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bio/analysis/replay.h"
+#include "bio/model/units.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/review/trial_review.h"
 #include "calibrate/calibrate_remarks.h"
@@ -18,7 +19,6 @@
 #include "options/parameter_list.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
-#include "output/angle_unit.h"
 #include "output/driven_trials.h"
 #include "output/json_text.h"
 #include "output/progress_bar.h"
@@ -217,7 +217,7 @@ class Calibrate : public Command {
     for (const NamedPair& bounds : parsePairs(bounds_, "--bounds")) {
       options.bounds[bounds.name] = {bounds.first, bounds.second};
     }
-    if (noise_) options.noise = *noise_ / degreesPerRadian;
+    if (noise_) options.noise = *noise_ / bio::degreesPerRadian;
     for (const std::string& text : channelNoise_) {
       const Assignment assignment = parseAssignment(text);
       if (!options.channelNoise.emplace(assignment.name, assignment.value).second) {
@@ -236,11 +236,14 @@ class Calibrate : public Command {
 
   /// Whether a parameter is positive by its nature, as a muscle's number, a mass or a radius is.
   static bool cannotBeNegative(const bio::ModelParameter& parameter) {
+    const bio::ParameterTarget& target = parameter.targets.front();
+    const auto* wrap = std::get_if<bio::WrapTarget>(&target);
+    const auto* body = std::get_if<bio::BodyTarget>(&target);
     return parameter.lower >= 0 &&
-           (std::holds_alternative<bio::MuscleTarget>(parameter.targets.front()) ||
-            std::holds_alternative<bio::MuscleNumberTarget>(parameter.targets.front()) ||
-            std::holds_alternative<bio::ForceNumberTarget>(parameter.targets.front()) ||
-            parameter.unit == "kg" || parameter.name.ends_with(".radius"));
+           (std::holds_alternative<bio::MuscleTarget>(target) ||
+            std::holds_alternative<bio::MuscleNumberTarget>(target) ||
+            std::holds_alternative<bio::ForceNumberTarget>(target) || (wrap && wrap->isSize()) ||
+            (body && body->quantity == bio::BodyTarget::Quantity::mass));
   }
 
   static void boundsMustBePossible(const bio::TrialSet& training,
@@ -306,8 +309,9 @@ class Calibrate : public Command {
     std::vector<double> sds;
     for (std::size_t i = 0; i < calibration.parameters.size(); ++i) {
       const bio::CalibratedParameter& parameter = calibration.parameters[i];
-      if (parameter.ofTrial || parameter.asked.name.starts_with("emg.") || !(parameter.sd > 0))
-        continue;
+      const bool isOfModel =
+          !parameter.ofTrial && !std::holds_alternative<bio::EmgTarget>(parameter.target);
+      if (!isOfModel || !(parameter.sd > 0)) continue;
       covariance.names.push_back(parameter.asked.name);
       kept.push_back(static_cast<Eigen::Index>(i));
       sds.push_back(parameter.sd);
@@ -326,7 +330,7 @@ class Calibrate : public Command {
       nlohmann::ordered_json json{{"file", file}, {"role", trial.isHeldOut ? "held_out" : "train"}};
       if (trial.driven) file = writeDriven(trial, trial.index + 1, calibrated.model, folder);
       json["replay_file"] = file;
-      json["rmse_after_deg"] = orNull(trial.after * degreesPerRadian);
+      json["rmse_after_deg"] = orNull(trial.after * bio::degreesPerRadian);
       for (const bio::ChannelError& channel : trial.channels) {
         json["rms_error"][nameOf(channel.what)] = {
             {"value", channel.error.rms}, {"unit", bio::unitOf(channel.what, calibrated.model)}};

@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "output/angle_unit.h"
+#include "bio/model/units.h"
 #include "output/text.h"
 
 namespace app {
@@ -27,7 +27,7 @@ void tellSteps(double asked, const bio::SteppedCalibration& found, Summary& summ
         "{}: halving the step of {} s changes the simulated {} by up to {:.2g} {}, {:.2g} standard "
         "deviations of the noise: use a shorter --step",
         found.training->trials()[i].file, numberText(step), areAngles ? "angles" : channel.name,
-        changes[i].difference * (areAngles ? degreesPerRadian : 1),
+        changes[i].difference * (areAngles ? bio::degreesPerRadian : 1),
         areAngles ? "deg" : unitText(channel.unit), changes[i].difference / changes[i].sd));
   }
   if (!found.change.mattersToEstimates()) return;
@@ -44,9 +44,9 @@ void tellNotFitted(const bio::TrialSet& training, const std::vector<bio::Trial>&
     for (const bio::Trial& trial : *trials) {
       for (const bio::MeasuredChannel& motion : trial.measured) {
         if (!motion.what.isCoordinate()) continue;
-        const int index = training.system().skeleton().indexOf(motion.what.of);
+        const int index = training.system().skeleton().indexOf(motion.what.object);
         if (index < 0 || !training.system().isPrescribed(index)) continue;
-        files[motion.what.of].push_back(trial.file);
+        files[motion.what.object].push_back(trial.file);
       }
     }
   }

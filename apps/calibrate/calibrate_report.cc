@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bio/model/units.h"
 #include "calibrate/calibrate_tables.h"
 #include "calibrate/held_out_prediction.h"
 #include "calibrate/latent_excitations.h"
-#include "output/angle_unit.h"
 #include "output/text.h"
 #include "report/interval_drawing.h"
 
@@ -17,12 +17,12 @@ namespace app {
 namespace {
 
 /// Angles are shown in degrees, everything else in its unit.
-ShownUnit shownUnit(const bio::MeasuredGroup& channel) {
-  if (channel.areAngles) return {degreesPerRadian, "deg"};
+bio::ShownUnit shownUnit(const bio::MeasuredGroup& channel) {
+  if (channel.areAngles) return {bio::degreesPerRadian, "deg"};
   return {1, unitText(channel.unit)};
 }
 
-std::vector<double> inUnit(const Eigen::VectorXd& values, const ShownUnit& unit) {
+std::vector<double> inUnit(const Eigen::VectorXd& values, const bio::ShownUnit& unit) {
   const Eigen::VectorXd result = values * unit.factor;
   return {result.begin(), result.end()};
 }
@@ -41,7 +41,7 @@ Figure overlay(const bio::TrialSet& set, std::size_t index, const Eigen::MatrixX
   const std::string& file = set.trials()[series.trial].file;
   const Eigen::VectorXd was = before.middleCols(begin, n).transpose();
   const Eigen::VectorXd is = after.middleCols(begin, n).transpose();
-  const ShownUnit unit = shownUnit(set.channels()[series.channel]);
+  const bio::ShownUnit unit = shownUnit(set.channels()[series.channel]);
   const auto rms = [&](const Eigen::VectorXd& y) {
     return std::sqrt((y - series.values).squaredNorm() / static_cast<double>(n)) * unit.factor;
   };
@@ -64,7 +64,7 @@ Figure overlay(const bio::TrialSet& set, std::size_t index, const Eigen::MatrixX
 /// Residuals of one channel.
 Figure residualFigure(const CalibrateFindings& f, std::size_t channel) {
   const bio::MeasuredGroup& shown = f.training.channels()[channel];
-  const ShownUnit unit = shownUnit(shown);
+  const bio::ShownUnit unit = shownUnit(shown);
   Figure figure{
       .title = measuresOnlyAngles(f.training) ? "Residuals" : "Residuals of " + shown.name,
       .xLabel = "Time [s]",
@@ -138,7 +138,7 @@ Table estimateTable(const CalibrateFindings& f) {
   if (!f.options.profile.empty()) table.columns.push_back("profile interval");
   if (bootstrapped) table.columns.push_back("bootstrap interval");
   for (const bio::CalibratedParameter& parameter : f.calibration.parameters) {
-    if (isKnot(parameter)) continue;
+    if (bio::isKnot(parameter.target)) continue;
     const auto& prior = parameter.asked.prior;
     std::vector<std::string> row = {
         parameter.asked.name,
@@ -171,7 +171,7 @@ VectorDrawing intervals(const CalibrateFindings& f) {
   const double z = info::normalQuantile(f.options.confidence);
   std::vector<IntervalRow> rows;
   for (const bio::CalibratedParameter& parameter : f.calibration.parameters) {
-    if (isKnot(parameter)) continue;
+    if (bio::isKnot(parameter.target)) continue;
     const auto scaled = [&](double value) { return (value - parameter.model) / parameter.priorSd; };
     IntervalRow row{.name = parameter.asked.name, .estimate = scaled(parameter.value)};
     if (const auto& prior = parameter.asked.prior) {
@@ -214,7 +214,7 @@ std::string aboveNoise(const CalibrateFindings& f) {
   return fmt::format(
       " Neighbouring samples scatter by only {:.3g} deg: these parameters do not explain the rest "
       "of the residual. Another parameter may, or an effect that the model lacks.",
-      f.calibration.noiseFloor * degreesPerRadian);
+      f.calibration.noiseFloor * bio::degreesPerRadian);
 }
 
 /// One sentence for each channel where not only angles were measured.
@@ -223,7 +223,7 @@ std::string channelNoiseText(const CalibrateFindings& f) {
   for (std::size_t i = 0; i < f.training.channels().size(); ++i) {
     const bio::MeasuredGroup& channel = f.training.channels()[i];
     const bio::ResidualNoise& noise = f.calibration.channelNoise[i];
-    const ShownUnit unit = shownUnit(channel);
+    const bio::ShownUnit unit = shownUnit(channel);
     const bool isGiven = channel.areAngles ? f.options.noise.has_value()
                                            : f.options.channelNoise.contains(channel.name);
     text += fmt::format("{}{}: {:.3g} {} {}", text.empty() ? "Noise of " : "; ", channel.name,
@@ -241,7 +241,7 @@ std::string noiseText(const CalibrateFindings& f) {
   const bio::ResidualNoise& noise = f.calibration.noise;
   if (f.options.noise) {
     return fmt::format("White noise of {:.3g} deg was given; the reduced χ² is {:.3g}.{}",
-                       noise.sd * degreesPerRadian, f.calibration.reducedChiSquare,
+                       noise.sd * bio::degreesPerRadian, f.calibration.reducedChiSquare,
                        f.calibration.reducedChiSquare > 1.5
                            ? " The residuals are larger than this noise: the model does not fit "
                              "the data to within the noise, and the intervals are too narrow."
@@ -251,7 +251,7 @@ std::string noiseText(const CalibrateFindings& f) {
     return fmt::format(
                "The residuals are white with a standard deviation of {:.3g} deg, which was taken "
                "as the noise.",
-               noise.sd * degreesPerRadian) +
+               noise.sd * bio::degreesPerRadian) +
            aboveNoise(f);
   }
   return fmt::format(
@@ -259,7 +259,7 @@ std::string noiseText(const CalibrateFindings& f) {
              "samples ({:.2g} s) count as one independent value, so the intervals are {:.2g} times "
              "wider than for white noise. Part of the residual is error of the model; the bias "
              "that it causes in the estimates is not covered by the intervals.",
-             noise.sd * degreesPerRadian, noise.correlationTime,
+             noise.sd * bio::degreesPerRadian, noise.correlationTime,
              noise.correlationTime * interval(f.training), std::sqrt(noise.correlationTime)) +
          aboveNoise(f);
 }
@@ -337,7 +337,7 @@ Report calibrateReport(const CalibrateFindings& f) {
   report.details.push_back(Section{"Estimates"});
   report.details.push_back(estimateTable(f));
   for (const bio::CalibratedParameter& parameter : c.parameters) {
-    if (!parameter.why.empty() && !isKnot(parameter))
+    if (!parameter.why.empty() && !bio::isKnot(parameter.target))
       report.details.push_back(Paragraph{parameter.why + "."});
   }
   report.details.emplace_back(intervals(f));

@@ -2,21 +2,21 @@
 
 #include <cmath>
 
+#include "bio/model/units.h"
 #include "calibrate/calibrate_report.h"
 #include "calibrate/held_out_prediction.h"
 #include "calibrate/latent_excitations.h"
-#include "output/angle_unit.h"
 #include "output/json_text.h"
 #include "output/text.h"
 
 namespace app {
 
 double rmse(const bio::TrialSet& set, const Eigen::MatrixXd& predicted) {
-  return std::sqrt(set.meanSquare(predicted)) * degreesPerRadian;
+  return std::sqrt(set.meanSquare(predicted)) * bio::degreesPerRadian;
 }
 
 double rmseAfter(const CalibrateFindings& f, bool heldOut) {
-  return f.calibrated->rms(heldOut) * degreesPerRadian;
+  return f.calibrated->rms(heldOut) * bio::degreesPerRadian;
 }
 
 namespace {
@@ -55,7 +55,7 @@ Json channelsJson(const CalibrateFindings& f) {
   Json channels = Json::object();
   for (std::size_t i = 0; i < f.training.channels().size(); ++i) {
     const bio::MeasuredGroup& channel = f.training.channels()[i];
-    const double unit = channel.areAngles ? degreesPerRadian : 1;
+    const double unit = channel.areAngles ? bio::degreesPerRadian : 1;
     const auto rms = [&](const bio::TrialSet& set, const Eigen::MatrixXd& predicted) {
       for (std::size_t k = 0; k < set.channels().size(); ++k) {
         if (set.channels()[k].name != channel.name) continue;
@@ -80,7 +80,7 @@ Json channelsJson(const CalibrateFindings& f) {
 Json correlationJson(const bio::Calibration& c) {
   std::vector<Eigen::Index> kept;
   for (std::size_t i = 0; i < c.parameters.size(); ++i) {
-    if (!isKnot(c.parameters[i])) kept.push_back(static_cast<Eigen::Index>(i));
+    if (!bio::isKnot(c.parameters[i].target)) kept.push_back(static_cast<Eigen::Index>(i));
   }
   Json rows = Json::array();
   for (const Eigen::Index i : kept) {
@@ -142,7 +142,7 @@ std::vector<info::discover::FittedNumber> fittedNumbers(const bio::Calibration& 
   std::vector<info::discover::FittedNumber> numbers;
   for (std::size_t i = 0; i < calibration.parameters.size(); ++i) {
     const bio::CalibratedParameter& parameter = calibration.parameters[i];
-    if (isKnot(parameter)) continue;
+    if (bio::isKnot(parameter.target)) continue;
     const auto& prior = parameter.asked.prior;
     numbers.push_back({i, parameter.asked.name, parameter.asked.unit, parameter.model,
                        parameter.value, parameter.sd, prior ? prior->sd : std::nan(""),
@@ -168,7 +168,7 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   if (!measuresOnlyAngles(f.training)) summary.set("channels", channelsJson(f));
   Json estimates = Json::object();
   for (const bio::CalibratedParameter& parameter : c.parameters) {
-    if (isKnot(parameter)) continue;  // of latent_excitations
+    if (bio::isKnot(parameter.target)) continue;  // of latent_excitations
     estimates[parameter.asked.name] = estimateJson(f, parameter);
     // of another minimum other_minima warns
     if (!parameter.why.empty() && !parameter.ofTrial && std::isnan(parameter.lower))
@@ -179,12 +179,13 @@ void tellCalibrate(const CalibrateFindings& f, Summary& summary) {
   tellLatent(f, summary);
   tellPredictions(f, summary);
   const bool firstAreAngles = f.training.channels().front().areAngles;
-  summary.set("noise_deg", firstAreAngles ? Json(c.noise.sd * degreesPerRadian) : Json(nullptr));
+  summary.set("noise_deg",
+              firstAreAngles ? Json(c.noise.sd * bio::degreesPerRadian) : Json(nullptr));
   summary.set("noise_is", f.options.noise ? "given" : "from the residuals");
-  summary.set("sample_scatter_deg", c.noiseFloor * degreesPerRadian);
+  summary.set("sample_scatter_deg", c.noiseFloor * bio::degreesPerRadian);
   summary.set("residual_above_noise", c.leavesMoreThanNoise());
   const double noises =
-      f.options.noise ? rmse(f.training, c.after) / (degreesPerRadian * *f.options.noise) : 0;
+      f.options.noise ? rmse(f.training, c.after) / (bio::degreesPerRadian * *f.options.noise) : 0;
   if (noises > 3) {
     summary.warn(
         fmt::format("the residual is {:.3g} times the noise given by --noise-deg: these parameters "

@@ -12,7 +12,7 @@ Table correlationTable(const CalibrateFindings& f) {
   std::vector<bio::CalibratedParameter> parameters;
   std::vector<Eigen::Index> place;
   for (std::size_t i = 0; i < f.calibration.parameters.size(); ++i) {
-    if (isKnot(f.calibration.parameters[i])) continue;
+    if (bio::isKnot(f.calibration.parameters[i].target)) continue;
     parameters.push_back(f.calibration.parameters[i]);
     place.push_back(static_cast<Eigen::Index>(i));
   }

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "bio/calibration/predicted_series.h"
-#include "output/angle_unit.h"
+#include "bio/model/units.h"
 #include "output/json_text.h"
 #include "output/text.h"
 
@@ -23,7 +23,7 @@ std::vector<ShownSeries> shownSeries(const CalibrateFindings& f) {
        bio::predictedSeries(f.training, *f.heldOut, f.calibration, f.options.confidence)) {
     const bio::MeasuredSeries& series = f.heldOut->series()[one.series];
     const bio::MeasuredGroup& channel = f.heldOut->channels()[series.channel];
-    const double factor = channel.areAngles ? degreesPerRadian : 1;
+    const double factor = channel.areAngles ? bio::degreesPerRadian : 1;
     for (double* value : {&one.measuredPeak, &one.predictedPeak, &one.sdOfEstimates, &one.noise,
                           &one.lower, &one.upper}) {
       *value *= factor;

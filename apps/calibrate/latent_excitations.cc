@@ -14,10 +14,6 @@ std::vector<double> knotValues(const Eigen::VectorXd& values) {
 
 }  // namespace
 
-bool isKnot(const bio::CalibratedParameter& parameter) {
-  return parameter.ofTrial && parameter.asked.name.find(".latent") != std::string::npos;
-}
-
 std::string inWords(const bio::PulledExcitation& excitation) {
   Eigen::Index at = 0;
   excitation.z.cwiseAbs().maxCoeff(&at);

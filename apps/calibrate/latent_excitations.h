@@ -5,9 +5,6 @@
 
 namespace app {
 
-/// A knot of a latent excitation, which is not told one by one.
-bool isKnot(const bio::CalibratedParameter& parameter);
-
 /// "TRIlat in a.sto: …", one line each.
 std::string inWords(const bio::PulledExcitation& excitation);
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "bio/analysis/replay.h"
+#include "bio/model/units.h"
 #include "bio/simulation/integrator_names.h"
 #include "command/command.h"
 #include "compare/compare_muscles_report.h"
@@ -133,7 +133,7 @@ class Compare : public Command {
     if (!integrators_.empty() || !steps_.empty() || !also_.empty()) {
       throw std::invalid_argument("--muscles excludes --integrators, --steps and --also");
     }
-    if (!simulation_.integrator.starts_with("vi")) {
+    if (!simulation_.isVariational()) {
       throw std::invalid_argument(fmt::format(
           "--integrator {}: must be vi or vi-left with --muscles", simulation_.integrator));
     }
@@ -154,7 +154,7 @@ class Compare : public Command {
     trial.start = {input.start.q, input.start.qDot};
     trial.coordinate = coordinate.name;
     trial.times = bio::observedTimes(input.trial, coordinate.name, input.recorded.simulation.step);
-    trial.noise = noise_ * (coordinate.isRotation ? std::numbers::pi / 180 : 1e-3);
+    trial.noise = noise_ * (coordinate.isRotation ? bio::radiansPerDegree : 1e-3);
     std::vector<bio::MuscleClassMotion> classes;
     {
       ProgressBar bar("compare");

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "bio/model/units.h"
 #include "bio/simulation/integrator_names.h"
-#include "output/angle_unit.h"
 #include "output/text.h"
 
 namespace app {
@@ -39,11 +39,11 @@ Series motionSeries(const CompareFindings& f, const std::string& name,
   const std::size_t every = time.size() / 1000 + 1;
   for (std::size_t k = 0; k < time.size(); k += every) {
     series.x.push_back(time[k]);
-    series.y.push_back(q(shownRow(f), static_cast<Eigen::Index>(k)) * degreesPerRadian);
+    series.y.push_back(q(shownRow(f), static_cast<Eigen::Index>(k)) * bio::degreesPerRadian);
   }
   if (!time.empty() && series.x.back() != time.back()) {
     series.x.push_back(time.back());
-    series.y.push_back(q(shownRow(f), q.cols() - 1) * degreesPerRadian);
+    series.y.push_back(q(shownRow(f), q.cols() - 1) * bio::degreesPerRadian);
   }
   return series;
 }
@@ -111,11 +111,11 @@ Figure variationalFigure(const CompareFindings& f) {
   if (usual != nullptr) {
     addCell(f, *usual, figure);
     figure.caption = fmt::format("RMS error at {} s: {:.2g} deg", numberText(usual->step),
-                                 usual->error.rms * degreesPerRadian);
+                                 usual->error.rms * bio::degreesPerRadian);
     if (longest != usual) {
       addCell(f, *longest, figure);
       figure.caption += fmt::format("; at {} s: {:.2g} deg", numberText(longest->step),
-                                    longest->error.rms * degreesPerRadian);
+                                    longest->error.rms * bio::degreesPerRadian);
     }
     figure.caption += ".";
   }
@@ -136,7 +136,7 @@ Figure workPrecisionFigure(const CompareFindings& f) {
     for (const auto* cell : cellsOf(f, integrator)) {
       if (!isOk(*cell)) continue;
       series.x.push_back(cell->wallSeconds * 1e3);
-      series.y.push_back(cell->error.rms * degreesPerRadian);
+      series.y.push_back(cell->error.rms * bio::degreesPerRadian);
     }
     figure.series.push_back(std::move(series));
   }
@@ -167,7 +167,7 @@ Figure errorFigure(const CompareFindings& f) {
     Series series{.name = longName(integrator)};
     for (const auto& [step, error] : errors) {
       series.x.push_back(step);
-      series.y.push_back(error * degreesPerRadian);
+      series.y.push_back(error * bio::degreesPerRadian);
     }
     figure.series.push_back(std::move(series));
   }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "bio/analysis/compare.h"
+#include "bio/model/units.h"
 #include "bio/simulation/integrator_names.h"
 #include "output/text.h"
 
@@ -16,12 +17,16 @@ bool reachedEnd(const bio::MuscleClassMotion& motion) {
   return motion.motion.outcome == bio::Outcome::completed;
 }
 
+double inDegrees(double angle) {
+  return angle * 180 / std::numbers::pi;
+}
+
 double shownFactorOf(const bio::Coordinate& coordinate) {
-  return coordinate.isRotation ? 180 / std::numbers::pi : 1e3;
+  return bio::positionUnit(coordinate.isRotation).factor;
 }
 
 std::string unitSuffix(const bio::Coordinate& coordinate) {
-  return coordinate.isRotation ? "_deg" : "_mm";
+  return "_" + bio::positionUnit(coordinate.isRotation).name;
 }
 
 /// The largest difference of the class from the first in any free rotation, and what of the
@@ -29,8 +34,7 @@ std::string unitSuffix(const bio::Coordinate& coordinate) {
 std::string rowOf(const bio::MuscleClassMotion& motion, double factor) {
   if (!reachedEnd(motion)) return ",,,,,,,";
   return fmt::format("{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g}",
-                     motion.difference.rms * 180 / std::numbers::pi,
-                     motion.difference.largest * 180 / std::numbers::pi,
+                     inDegrees(motion.difference.rms), inDegrees(motion.difference.largest),
                      motion.difference.largestAt, motion.measured * factor,
                      motion.unexplained * factor, motion.information.determinedCombinations,
                      motion.motion.wallSeconds * 1e3, motion.energyError);
@@ -79,8 +83,8 @@ void tellMuscles(const MuscleFindings& f, Summary& summary) {
     nlohmann::ordered_json row{{"class", motion.name},
                                {"status", bio::name(motion.motion.outcome)}};
     if (reachedEnd(motion)) {
-      row["rms_deg"] = motion.difference.rms * 180 / std::numbers::pi;
-      row["max_deg"] = motion.difference.largest * 180 / std::numbers::pi;
+      row["rms_deg"] = inDegrees(motion.difference.rms);
+      row["max_deg"] = inDegrees(motion.difference.largest);
       row["max_at_s"] = motion.difference.largestAt;
       row["measured_rms" + unit] = motion.measured * factor;
       row["unexplained_rms" + unit] = motion.unexplained * factor;
@@ -98,7 +102,7 @@ void tellMuscles(const MuscleFindings& f, Summary& summary) {
 
 Report musclesReport(const MuscleFindings& f) {
   const double factor = shownFactorOf(f.coordinate);
-  const char* unit = f.coordinate.isRotation ? "deg" : "mm";
+  const std::string unit = bio::positionUnit(f.coordinate.isRotation).name;
   Report report;
   report.title = fmt::format("Muscle classes of {} on {}", f.modelFile, f.trialFile);
   const bio::MuscleClassMotion* widest = nullptr;
@@ -131,12 +135,12 @@ Report musclesReport(const MuscleFindings& f) {
       table.rows.push_back({motion.name, motion.motion.why, "", "", "", "", "", ""});
       continue;
     }
-    table.rows.push_back(
-        {motion.name, "ok", numberText(motion.difference.rms * 180 / std::numbers::pi),
-         numberText(motion.difference.largest * 180 / std::numbers::pi),
-         numberText(motion.measured * factor), numberText(motion.unexplained * factor),
-         std::to_string(motion.information.determinedCombinations),
-         numberText(motion.motion.wallSeconds * 1e3)});
+    table.rows.push_back({motion.name, "ok", numberText(inDegrees(motion.difference.rms)),
+                          numberText(inDegrees(motion.difference.largest)),
+                          numberText(motion.measured * factor),
+                          numberText(motion.unexplained * factor),
+                          std::to_string(motion.information.determinedCombinations),
+                          numberText(motion.motion.wallSeconds * 1e3)});
   }
   for (std::size_t i = 0; i < rowNames(f).size(); ++i) {
     std::vector<std::string> row{rowNames(f)[i].name};

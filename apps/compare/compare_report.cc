@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "bio/analysis/replay.h"
+#include "bio/model/units.h"
 #include "bio/simulation/integrator_names.h"
 #include "compare/compare_figures.h"
-#include "output/angle_unit.h"
 #include "output/text.h"
 
 namespace app {
@@ -24,8 +24,8 @@ Table cellTable(const CompareFindings& f) {
         {bio::name(cell.integrator), numberText(cell.step),
          isOk(cell) ? (cell.halvedSteps > 0 ? fmt::format("ok, {} halved", cell.halvedSteps) : "ok")
                     : fmt::format("{} at {} s", bio::name(cell.outcome), numberText(cell.failedAt)),
-         numberText(cell.error.rms * degreesPerRadian, 3),
-         numberText(cell.error.largest * degreesPerRadian, 3),
+         numberText(cell.error.rms * bio::degreesPerRadian, 3),
+         numberText(cell.error.largest * bio::degreesPerRadian, 3),
          numberText(cell.wallSeconds * 1e3, 4), numberText(cell.newtonPerStep, 3),
          numberText(cell.energyError, 3)});
   }
@@ -57,13 +57,14 @@ std::string referenceText(const CompareFindings& f) {
       "RMS and at most {:.2g} deg; interpolating it adds {:.2g} deg. Smaller errors are not "
       "resolved.",
       reference.relativeTolerance, reference.looserTolerance,
-      reference.problem.rms * degreesPerRadian, reference.problem.largest * degreesPerRadian,
-      reference.interpolationError * degreesPerRadian);
+      reference.problem.rms * bio::degreesPerRadian,
+      reference.problem.largest * bio::degreesPerRadian,
+      reference.interpolationError * bio::degreesPerRadian);
   if (!reference.confirmed()) {
     return fmt::format("{} It is disputed: {}.", text, reference.whyDisputed);
   }
   return fmt::format("{} The variational integrator at {:g} s confirms it to {:.2g} deg RMS.", text,
-                     reference.secondStep, reference.second.rms * degreesPerRadian);
+                     reference.secondStep, reference.second.rms * bio::degreesPerRadian);
 }
 
 std::string verdictOf(const CompareFindings& f) {
@@ -76,7 +77,7 @@ std::string verdictOf(const CompareFindings& f) {
   if (isOk(*f.chosen)) {
     text += fmt::format("{} at {} s has an RMS error of {:.2g} deg against the converged reference",
                         bio::name(f.chosen->integrator), numberText(f.chosen->step),
-                        f.chosen->error.rms * degreesPerRadian);
+                        f.chosen->error.rms * bio::degreesPerRadian);
   } else {
     text += fmt::format("{} at {} s does not reach the end", bio::name(f.chosen->integrator),
                         numberText(f.chosen->step));
@@ -103,14 +104,14 @@ void addMeasured(const CompareFindings& f, Report& report) {
     Series series{.name = "measured", .style = SeriesStyle::points};
     for (Eigen::Index k = 0; k < measured.times.size(); ++k) {
       series.x.push_back(measured.times[k]);
-      series.y.push_back(measured.values[k] * degreesPerRadian);
+      series.y.push_back(measured.values[k] * bio::degreesPerRadian);
     }
     figure.series.push_back(std::move(series));
     figure.caption = fmt::format(
         "The reference has an RMS error of {:.3g} deg against the measured motion, which is an "
         "error of the model and not of an integrator. Each integrator is drawn at its longest step "
         "with an error below {:.2g} deg.",
-        error.rms * degreesPerRadian, f.options.usefulError * degreesPerRadian);
+        error.rms * bio::degreesPerRadian, f.options.usefulError * bio::degreesPerRadian);
     report.details.push_back(std::move(figure));
   }
 }
@@ -120,11 +121,11 @@ void addAlso(const CompareFindings& f, Report& report) {
   Figure figure = besideFigure(f, "Comparison with other programs");
   for (const AlsoCurve& curve : f.also) {
     Series series{.name = curve.name, .x = curve.curve.time, .style = SeriesStyle::points};
-    for (const double value : curve.curve.value) series.y.push_back(value * degreesPerRadian);
+    for (const double value : curve.curve.value) series.y.push_back(value * bio::degreesPerRadian);
     figure.series.push_back(std::move(series));
-    figure.caption +=
-        fmt::format("{}{} differs from the reference by {:.2g} deg (RMS).",
-                    figure.caption.empty() ? "" : " ", curve.name, curve.rms * degreesPerRadian);
+    figure.caption += fmt::format("{}{} differs from the reference by {:.2g} deg (RMS).",
+                                  figure.caption.empty() ? "" : " ", curve.name,
+                                  curve.rms * bio::degreesPerRadian);
   }
   report.details.push_back(std::move(figure));
 }
@@ -138,8 +139,8 @@ void writeCells(const bio::Comparison& comparison, std::ostream& out) {
   for (const bio::CompareCell& one : comparison.cells) {
     out << fmt::format("{},{},{},{},{},{},{},{},{}\n", bio::name(one.integrator), cell(one.step),
                        bio::name(one.outcome), cell(one.failedAt),
-                       cell(one.error.rms * degreesPerRadian),
-                       cell(one.error.largest * degreesPerRadian), cell(one.wallSeconds * 1e3),
+                       cell(one.error.rms * bio::degreesPerRadian),
+                       cell(one.error.largest * bio::degreesPerRadian), cell(one.wallSeconds * 1e3),
                        cell(one.newtonPerStep), cell(one.energyError));
   }
 }
@@ -160,7 +161,7 @@ void tellCompare(const CompareFindings& f, Summary& summary) {
   summary.set("largest_stable_step_s", stable);
   summary.set("observed_order", observed);
   summary.set("observed_order_steps_s", used);
-  summary.set("stable_means_rms_below_deg", f.options.usefulError * degreesPerRadian);
+  summary.set("stable_means_rms_below_deg", f.options.usefulError * bio::degreesPerRadian);
   summary.set("reference_status", !reference.completed()  ? "failed"
                                   : reference.confirmed() ? "confirmed"
                                                           : "disputed");
@@ -170,26 +171,27 @@ void tellCompare(const CompareFindings& f, Summary& summary) {
     return;
   }
   summary.set("status", bio::name(f.chosen->outcome));
-  summary.set("rms_deg", f.chosen->error.rms * degreesPerRadian);
-  summary.set("max_deg", f.chosen->error.largest * degreesPerRadian);
+  summary.set("rms_deg", f.chosen->error.rms * bio::degreesPerRadian);
+  summary.set("max_deg", f.chosen->error.largest * bio::degreesPerRadian);
   summary.set("newton_iterations_per_step", f.chosen->newtonPerStep);
   summary.set("energy_error_J", f.chosen->energyError);
   summary.set("reference_relative_tolerances",
               Json::array({reference.looserTolerance, reference.relativeTolerance}));
-  summary.set("reference_disagreement_rms_deg", reference.problem.rms * degreesPerRadian);
-  summary.set("reference_disagreement_max_deg", reference.problem.largest * degreesPerRadian);
-  summary.set("reference_interpolation_rms_deg", reference.interpolationError * degreesPerRadian);
+  summary.set("reference_disagreement_rms_deg", reference.problem.rms * bio::degreesPerRadian);
+  summary.set("reference_disagreement_max_deg", reference.problem.largest * bio::degreesPerRadian);
+  summary.set("reference_interpolation_rms_deg",
+              reference.interpolationError * bio::degreesPerRadian);
   summary.set("reference_second_integrator", "vi");
   summary.set("reference_second_step_s", reference.secondStep);
-  summary.set("reference_second_rms_deg", reference.second.rms * degreesPerRadian);
+  summary.set("reference_second_rms_deg", reference.second.rms * bio::degreesPerRadian);
   for (const bio::MeasuredChannel& measured : f.trial.measured) {
     if (measured.what != bio::ofCoordinate(f.coordinate.name)) continue;
     summary.set(
         "reference_from_measured_rms_deg",
-        bio::compareWithMeasured(f.system, reference.motion, measured).rms * degreesPerRadian);
+        bio::compareWithMeasured(f.system, reference.motion, measured).rms * bio::degreesPerRadian);
   }
   for (const AlsoCurve& curve : f.also) {
-    summary.set("also_" + curve.name + "_rms_deg", curve.rms * degreesPerRadian);
+    summary.set("also_" + curve.name + "_rms_deg", curve.rms * bio::degreesPerRadian);
   }
   summary.set("timings_per_run", f.options.timings);
   summary.set("notes", f.system.notes());
@@ -213,10 +215,10 @@ Report compareReport(const CompareFindings& f) {
   }
   report.details.push_back(Section{"Largest stable steps"});
   report.details.push_back(limitTable(f));
-  report.details.push_back(Paragraph{
-      fmt::format("A step is stable if the run reaches the end with an RMS error below {:.2g} deg "
-                  "against the reference. The limit is found by bisection to {:.2g} %.",
-                  f.options.usefulError * degreesPerRadian, (f.options.stepResolution - 1) * 100)});
+  report.details.push_back(Paragraph{fmt::format(
+      "A step is stable if the run reaches the end with an RMS error below {:.2g} deg "
+      "against the reference. The limit is found by bisection to {:.2g} %.",
+      f.options.usefulError * bio::degreesPerRadian, (f.options.stepResolution - 1) * 100)});
   report.details.push_back(failureTimeline(f));
   if (Table failures = failureTable(f); !failures.rows.empty()) {
     report.details.push_back(std::move(failures));

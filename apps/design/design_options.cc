@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "bio/design/design_setup.h"
+#include "bio/model/units.h"
 #include "options/observed_channels.h"
 #include "options/trial_input.h"
-#include "output/angle_unit.h"
 
 namespace app {
 namespace {
@@ -159,7 +159,7 @@ void addPlan(CLI::App& options, DesignOptions& typed) {
       ->allow_extra_args(false);
   number("--speed", typed.speed_deg, "DEG/S",
          "largest speed of the coordinates (of a shift: in mm/s)");
-  number("--surprise", typed.limits.surprise, "K",
+  number("--surprise", typed.limits.robustness, "K",
          "respect the range even if the parameters are K prior standard deviations off");
   number("--knots", typed.knots, "SECONDS",
          "interval between the knots of the piecewise linear inputs");
@@ -245,8 +245,9 @@ void checkDesignOptions(const DesignOptions& typed) {
   positive("--excitation-rate", typed.limits.excitationRate, "1/s");
   positive("--speed", typed.speed_deg, "deg/s");
   positive("--knots", typed.knots, "s");
-  if (!(typed.limits.surprise >= 0 && std::isfinite(typed.limits.surprise))) {
-    throw std::invalid_argument(fmt::format("--surprise: {}, must be ≥ 0", typed.limits.surprise));
+  if (!(typed.limits.robustness >= 0 && std::isfinite(typed.limits.robustness))) {
+    throw std::invalid_argument(
+        fmt::format("--surprise: {}, must be ≥ 0", typed.limits.robustness));
   }
   if (!(typed.limits.largestExcitation > typed.limits.leastExcitation &&
         typed.limits.largestExcitation <= 1)) {
@@ -260,7 +261,7 @@ void checkDesignOptions(const DesignOptions& typed) {
   if (!isPushed && typed.excite.empty()) {
     throw std::invalid_argument("--torque 0 without --excite leaves nothing to change");
   }
-  if (!typed.simulation.integrator.starts_with("vi")) {
+  if (!typed.simulation.isVariational()) {
     throw std::invalid_argument(
         fmt::format("--integrator {}: must be vi or vi-left, which alone have sensitivities",
                     typed.simulation.integrator));
@@ -276,7 +277,7 @@ bio::DesignLimits designLimits(const DesignOptions& typed,
   given.torque = torquesOf(typed);
   for (const bio::Coordinate& coordinate : system.skeleton().coordinates()) {
     given.speed[coordinate.name] =
-        typed.speed_deg * (coordinate.isRotation ? radiansPerDegree : 1e-3);
+        typed.speed_deg * (coordinate.isRotation ? bio::radiansPerDegree : 1e-3);
   }
   for (const int prescribed : system.prescribed()) {
     given.speed.erase(system.skeleton().coordinates()[static_cast<std::size_t>(prescribed)].name);
@@ -302,7 +303,7 @@ std::vector<bio::ChannelCandidate> designOutputs(const DesignOptions& typed,
                                                  const bio::MusculoskeletalSystem& system) {
   if (!typed.observe.empty()) return readObserved(typed.observe, model, system);
   const auto observed =
-      bio::freeCoordinates(system, typed.noise_deg * radiansPerDegree, typed.noise_deg / 1000);
+      bio::freeCoordinates(system, typed.noise_deg * bio::radiansPerDegree, typed.noise_deg / 1000);
   if (!observed.empty()) return observed;
   throw std::invalid_argument(
       "no coordinate is free to be observed: --observe must name what is measured");

@@ -29,14 +29,14 @@ Figure predicted(const DesignFindings& f, std::size_t channel) {
   const auto& observed = f.design.question().observed;
   for (std::size_t o = 0; o < observed.size(); ++o) {
     if (observed[o].what != after.what) continue;
-    const Eigen::VectorXd surprise =
-        f.design.surpriseAt(f.result.after).col(static_cast<Index>(o)) * factor;
-    designed.bandLow = asList(after.values * factor - surprise);
-    designed.bandHigh = asList(after.values * factor + surprise);
+    const Eigen::VectorXd allowance =
+        f.design.allowanceAt(f.result.after).col(static_cast<Index>(o)) * factor;
+    designed.bandLow = asList(after.values * factor - allowance);
+    designed.bandHigh = asList(after.values * factor + allowance);
     caption = fmt::format(
         "The band shows the designed experiment if the parameters are {} prior standard deviations "
         "off (to first order).",
-        numberText(f.design.inputs().limits().surprise));
+        numberText(f.design.inputs().limits().robustness));
   }
   Figure figure = predictionFigure(planned(f), after.what, caption);
   figure.series.push_back(std::move(designed));
@@ -93,7 +93,7 @@ Table limitsKept(const DesignFindings& f) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string& name = all[i].coordinate;
     const bio::MotionRange& range = f.result.after.ranges[i];
-    const ShownUnit unit = planned(f).unitOf(name);
+    const bio::ShownUnit unit = planned(f).unitOf(name);
     addLimit(table, "lowest " + name, range.lowest, all[i].lower, unit);
     addLimit(table, "the same, parameters off", range.surprisedLowest, all[i].lower, unit);
     addLimit(table, "highest " + name, range.highest, all[i].upper, unit);

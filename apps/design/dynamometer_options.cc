@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "bio/model/units.h"
 #include "design/design_options.h"
 #include "options/quantity.h"
-#include "output/angle_unit.h"
 
 namespace app {
 namespace {
@@ -119,10 +119,10 @@ bio::DynamometerQuestion dynamometerQuestion(const DesignOptions& typed,
   question.nuisance = typed.nuisance;
   question.count = options.count;
   question.noise = options.momentNoise;
-  question.angleNoise = turns ? typed.noise_deg * radiansPerDegree : typed.noise_deg / 1000;
+  question.angleNoise = turns ? typed.noise_deg * bio::radiansPerDegree : typed.noise_deg / 1000;
   question.rate = typed.rate_Hz;
-  question.fastest = turns ? typed.speed_deg * radiansPerDegree : typed.speed_deg / 1000;
-  question.surprise = typed.limits.surprise;
+  question.fastest = turns ? typed.speed_deg * bio::radiansPerDegree : typed.speed_deg / 1000;
+  question.robustness = typed.limits.robustness;
   question.positions = quantities(options.angles, turns, "--angles");
   question.speeds = quantities(options.speeds, turns, "--speeds");
   question.efforts = shares(options.efforts);

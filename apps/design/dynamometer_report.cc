@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bio/model/units.h"
 #include "design/dynamometer_design.h"
-#include "output/angle_unit.h"
 #include "output/text.h"
 
 namespace app {
@@ -24,14 +24,15 @@ bool measuresAngles(const bio::DynamometerPlan& plan) {
 std::string angleNoiseOf(const bio::DynamometerPlan& plan, const bio::DynamometerQuestion& question,
                          bool turns) {
   if (!measuresAngles(plan)) return "";
-  return turns ? fmt::format(", of {:g} deg of the angle", question.angleNoise * degreesPerRadian)
+  return turns ? fmt::format(", of {:g} deg of the angle",
+                             question.angleNoise * bio::degreesPerRadian)
                : fmt::format(", of {:g} mm of the shift", question.angleNoise * 1000);
 }
 
 }  // namespace
 
 void tellDynamometer(const bio::DynamometerPlan& plan, bool turns, Summary& summary) {
-  const double unit = turns ? degreesPerRadian : 1;
+  const double unit = turns ? bio::degreesPerRadian : 1;
   nlohmann::ordered_json before = nlohmann::ordered_json::object(), now = before;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
@@ -44,11 +45,11 @@ void tellDynamometer(const bio::DynamometerPlan& plan, bool turns, Summary& summ
     for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
       bounds[plan.parameters[i].name] = plan.bounds[n][static_cast<Index>(i)];
     }
-    const char* of = turns ? "_deg" : "_m";
+    const char* suffix = turns ? "_deg" : "_m";
     list.push_back({{"kind", bio::name(experiment.kind)},
-                    {fmt::format("from{}", of), experiment.from * unit},
-                    {fmt::format("to{}", of), experiment.to * unit},
-                    {fmt::format("speed{}_per_s", of), experiment.speed * unit},
+                    {fmt::format("from{}", suffix), experiment.from * unit},
+                    {fmt::format("to{}", suffix), experiment.to * unit},
+                    {fmt::format("speed{}_per_s", suffix), experiment.speed * unit},
                     {"muscles", experiment.group},
                     {"effort_percent", 100 * experiment.effort},
                     {"load_percent", 100 * experiment.load},

@@ -55,16 +55,16 @@ Figure excitationFigure(const PlannedInputs& planned, const bio::MuscleGroup& gr
 
 }  // namespace
 
-ShownUnit shownUnit(const std::string& unit) {
+bio::ShownUnit shownUnit(const std::string& unit) {
   if (!unit.starts_with("rad")) return {1, unitText(unit)};
-  return {degreesPerRadian, "deg" + unit.substr(3)};
+  return {bio::degreesPerRadian, "deg" + unit.substr(3)};
 }
 
 const bio::Coordinate& PlannedInputs::coordinate(const std::string& name) const {
   return bio::findCoordinate(model, name);
 }
 
-ShownUnit PlannedInputs::unitOf(const std::string& name) const {
+bio::ShownUnit PlannedInputs::unitOf(const std::string& name) const {
   return shownUnit(coordinate(name).isRotation ? "rad" : "m");
 }
 
@@ -75,7 +75,7 @@ std::string PlannedInputs::torqueUnit(const std::string& name) const {
 Figure predictionFigure(const PlannedInputs& planned, const bio::Observable& what,
                         const std::string& caption) {
   const std::string name = nameOf(what);
-  const ShownUnit unit = shownUnit(bio::unitOf(what, planned.model));
+  const bio::ShownUnit unit = shownUnit(bio::unitOf(what, planned.model));
   Figure figure{.title = fmt::format("Predicted {}", name),
                 .xLabel = "Time [s]",
                 .yLabel = fmt::format("{} [{}]", name, unit.name),
@@ -99,7 +99,7 @@ void addInputFigures(const PlannedInputs& planned, Report& report) {
 }
 
 void addLimit(Table& table, const std::string& quantity, double designed, double limit,
-              const ShownUnit& unit) {
+              const bio::ShownUnit& unit) {
   table.rows.push_back(
       {quantity, numberText(designed * unit.factor), numberText(limit * unit.factor), unit.name});
 }
@@ -143,7 +143,7 @@ void tellPlan(const PlannedInputs& planned, const std::vector<bio::ChannelCandid
   const bio::DesignInputs& inputs = planned.inputs;
   Json outputs = Json::array(), coordinates = Json::array();
   for (const bio::ChannelCandidate& candidate : observed) {
-    const ShownUnit unit = shownUnit(bio::unitOf(candidate.what, planned.model));
+    const bio::ShownUnit unit = shownUnit(bio::unitOf(candidate.what, planned.model));
     outputs.push_back({{"name", nameOf(candidate.what)},
                        {"unit", unit.name},
                        {"sd", candidate.sd * unit.factor}});
@@ -152,7 +152,7 @@ void tellPlan(const PlannedInputs& planned, const std::vector<bio::ChannelCandid
   const auto& all = inputs.limits().coordinates;
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const std::string& name = all[i].coordinate;
-    const ShownUnit unit = planned.unitOf(name);
+    const bio::ShownUnit unit = planned.unitOf(name);
     coordinates.push_back({{"name", name},
                            {"unit", unit.name},
                            {"lowest", motions[i].lowest * unit.factor},
@@ -166,7 +166,7 @@ void tellPlan(const PlannedInputs& planned, const std::vector<bio::ChannelCandid
   // what there was before there were lists
   const bool isOneAngle = all.size() == 1 && planned.coordinate(all[0].coordinate).isRotation;
   if (isOneAngle && observed.front().what == bio::ofCoordinate(all[0].coordinate)) {
-    summary.set("noise_deg", observed.front().sd * degreesPerRadian);
+    summary.set("noise_deg", observed.front().sd * bio::degreesPerRadian);
   }
   summary.set("rate_Hz", 1 / period);
   if (isOneAngle) {
@@ -189,7 +189,7 @@ std::string measurementText(const std::vector<bio::ChannelCandidate>& observed, 
                             const bio::Model& model) {
   std::vector<std::string> texts;
   for (const bio::ChannelCandidate& candidate : observed) {
-    const ShownUnit unit = shownUnit(bio::unitOf(candidate.what, model));
+    const bio::ShownUnit unit = shownUnit(bio::unitOf(candidate.what, model));
     texts.push_back(fmt::format("{} (noise {} {})", nameOf(candidate.what),
                                 numberText(candidate.sd * unit.factor), unit.name));
   }

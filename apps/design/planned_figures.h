@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "bio/design/input_search.h"
+#include "bio/model/units.h"
 #include "bio/observation/channel_information.h"
-#include "output/angle_unit.h"
 #include "output/summary.h"
 #include "report/report.h"
 
@@ -13,7 +13,7 @@
 namespace app {
 
 /// Angles are shown in degrees, everything else in its unit.
-ShownUnit shownUnit(const std::string& unit);
+bio::ShownUnit shownUnit(const std::string& unit);
 
 /// A search for inputs of an experiment.
 struct PlannedInputs {
@@ -24,7 +24,7 @@ struct PlannedInputs {
 
   const bio::Coordinate& coordinate(const std::string& name) const;
   /// "deg" or "m"
-  ShownUnit unitOf(const std::string& coordinate) const;
+  bio::ShownUnit unitOf(const std::string& coordinate) const;
   /// "N m" or "N"
   std::string torqueUnit(const std::string& coordinate) const;
 };
@@ -39,7 +39,7 @@ void addInputFigures(const PlannedInputs& planned, Report& report);
 Table limitTable(const PlannedInputs& planned);
 /// Adds a row to it.
 void addLimit(Table& table, const std::string& quantity, double designed, double limit,
-              const ShownUnit& unit);
+              const bio::ShownUnit& unit);
 /// @param sign  of the costs
 Figure searchFigure(const bio::DesignSearchRecord& record, double before, double sign,
                     const std::string& yLabel);

@@ -98,7 +98,7 @@ class Writing {
     for (std::size_t i = 0; i < all.size(); ++i) {
       const std::string& name = all[i].coordinate;
       const bio::MotionExtremes& range = f_.result.after.ranges[i];
-      const ShownUnit unit = planned().unitOf(name);
+      const bio::ShownUnit unit = planned().unitOf(name);
       addLimit(table, "lowest " + name, range.lowest, all[i].lower, unit);
       addLimit(table, "highest " + name, range.highest, all[i].upper, unit);
       addLimit(table, "largest speed of " + name, range.fastest, all[i].speed,

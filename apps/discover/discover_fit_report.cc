@@ -73,7 +73,7 @@ Figure motionFigure(const DiscoverFindings& f, int t, std::size_t output) {
 }
 
 Table excessErrorTable(const DiscoverFindings& f) {
-  const std::string& unit = f.wording.gapUnit;
+  const std::string& unit = f.wording.errorUnit;
   const double scale = f.wording.unit;
   Table table{f.wording.isInNoise() ? "RMS error (measured − simulated) in standard deviations of "
                                       "the noise, over all outputs"
@@ -82,15 +82,15 @@ Table excessErrorTable(const DiscoverFindings& f) {
                "with the effect [" + unit + "]", "expected [" + unit + "]", "noise [" + unit + "]",
                "relative to the range [%]", "excess error explained"},
               {}};
-  const auto row = [&](const char* name, const ExcessError& gap) {
-    table.rows.push_back({name, numberText(scale * gap.nominal, 3),
-                          numberText(scale * gap.calibrated, 3), numberText(scale * gap.after, 3),
-                          gap.expected ? numberText(scale * *gap.expected, 3) : "–",
-                          numberText(scale * gap.floor, 3),
-                          numberText(100 * gap.after / gap.range, 2),
-                          gap.closedFromCalibrated ? excessErrorCell(gap) : "no excess error"});
+  const auto row = [&](const char* name, const ExcessError& excess) {
+    table.rows.push_back(
+        {name, numberText(scale * excess.nominal, 3), numberText(scale * excess.calibrated, 3),
+         numberText(scale * excess.after, 3),
+         excess.expected ? numberText(scale * *excess.expected, 3) : "–",
+         numberText(scale * excess.floor, 3), numberText(100 * excess.after / excess.range, 2),
+         excess.closedFromCalibrated ? excessErrorCell(excess) : "no excess error"});
   };
-  row("fitted", f.verdict.gap);
+  row("fitted", f.verdict.excess);
   if (f.verdict.heldOut) row("held out", *f.verdict.heldOut);
   return table;
 }

@@ -36,10 +36,10 @@ class Writer {
                       withUnit(amplitude.sd, quantity.unit, 2));
     }
     const bool excessOfHeldOut = f_.verdict.heldOut.has_value();
-    const ExcessError& gap = excessOfHeldOut ? *f_.verdict.heldOut : f_.verdict.gap;
-    if (gap.closedFromCalibrated && !f_.verdict.effects.empty()) {
-      report_.verdict += " " + excessErrorWords(gap, f_.wording.unit, symbolOf(f_.wording.gapUnit),
-                                                excessOfHeldOut);
+    const ExcessError& excess = excessOfHeldOut ? *f_.verdict.heldOut : f_.verdict.excess;
+    if (excess.closedFromCalibrated && !f_.verdict.effects.empty()) {
+      report_.verdict += " " + excessErrorWords(excess, f_.wording.unit,
+                                                symbolOf(f_.wording.errorUnit), excessOfHeldOut);
     }
     const int first = f_.options.heldOut.empty() ? 0 : f_.options.heldOut.front();
     bool hasMain = false;
@@ -61,7 +61,7 @@ class Writer {
     // stopped before there was a base model?
     if (f_.verdict.base.size() > 0) {
       section("How well it fits");
-      if (!std::isnan(f_.verdict.gap.floor)) report_.details.emplace_back(excessErrorTable(f_));
+      if (!std::isnan(f_.verdict.excess.floor)) report_.details.emplace_back(excessErrorTable(f_));
       if (f_.wording.isInNoise()) report_.details.emplace_back(outputErrorTable(f_));
       report_.details.emplace_back(adequacyTable(f_));
       for (ReportPart& part : withoutName(f_)) report_.details.push_back(std::move(part));
@@ -89,7 +89,7 @@ class Writer {
   void effects() {
     const auto& verdict = f_.verdict;
     if (verdict.effects.empty()) return;
-    section(verdict.proxy ? "Closest match in the catalogue" : "Missing effects");
+    section(verdict.surrogate ? "Closest match in the catalogue" : "Missing effects");
     Table table{"",
                 {"effect", "parameter", "unit", "estimate", "± sd", "log Bayes factor [nats]",
                  "probability"},
@@ -165,7 +165,7 @@ class Writer {
     }
     std::string text = fmt::format(
         "On {0} its {1} is {2} (RMS; largest {3}), which is {4} % of the muscles' net {1}.", motion,
-        axis.forceUnit == "N·m" ? "moment" : "force", withUnit(size.moment.rms, axis.forceUnit, 2),
+        axis.isTorque ? "moment" : "force", withUnit(size.moment.rms, axis.forceUnit, 2),
         withUnit(size.moment.peak, axis.forceUnit, 2), numberText(100 * size.moment.share, 2));
     if (size.motionRms > 0)  // else it is prescribed
       text += fmt::format(" Leaving it out changes the simulated motion by {} (RMS).", moved);
@@ -176,7 +176,7 @@ class Writer {
   void reproduce() {
     if (!f_.written || f_.written->trials.empty()) return;
     section("Reproduce");
-    const std::string& unit = f_.wording.gapUnit;
+    const std::string& unit = f_.wording.errorUnit;
     const auto figure = [&](double value) { return numberText(f_.wording.unit * value); };
     Table errors{"RMS error (measured − simulated), as replay reports it",
                  {"trial", "role", "original model [" + unit + "]",
@@ -260,8 +260,8 @@ class Writer {
           quantity.logarithmic ? quantity.sd * std::max(estimate.value, 1e-300) : quantity.sd;
       const double half = 1.96 * estimate.sd / scale;
       rows.push_back({.name = quantity.name,
-                      .estimate = estimate.surprise,
-                      .interval = std::pair(estimate.surprise - half, estimate.surprise + half),
+                      .estimate = estimate.priorZ,
+                      .interval = std::pair(estimate.priorZ - half, estimate.priorZ + half),
                       .before = std::pair(-1.96, 1.96)});
     }
     report_.details.emplace_back(
@@ -269,7 +269,7 @@ class Writer {
                       intervalDrawing(rows, "Difference from the model's value [prior sd]"),
                       fmt::format("95 % intervals. A parameter beyond ±{} prior standard "
                                   "deviations counts as a parameter error.",
-                                  f_.options.surprise)});
+                                  f_.options.largestPriorZ)});
   }
 
   void detectability() {

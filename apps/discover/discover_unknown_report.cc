@@ -26,10 +26,10 @@ Paragraph raced(const DiscoverFindings& f, const info::discover::RacedFormula& f
       "Fitted as a candidate effect: {}, with a log Bayes factor of {} nats against the model "
       "without it",
       formula.text, numberText(formula.logBayesFactor, 3));
-  const info::discover::ExcessError& gap = formula.heldOut ? *formula.heldOut : formula.gap;
+  const info::discover::ExcessError& excess = formula.heldOut ? *formula.heldOut : formula.excess;
   text += ". ";
-  if (gap.closedFromCalibrated)
-    text += excessErrorWords(gap, f.wording.unit, symbolOf(f.wording.gapUnit),
+  if (excess.closedFromCalibrated)
+    text += excessErrorWords(excess, f.wording.unit, symbolOf(f.wording.errorUnit),
                              formula.heldOut.has_value()) +
             " ";
   return {text + (formula.wins ? "With it the residual is adequate; with_effect.osim contains it."

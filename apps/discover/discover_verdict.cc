@@ -30,20 +30,20 @@ ordered_json parametersJson(const DiscoverFindings& f, const std::vector<Estimat
   return parameters;
 }
 
-ordered_json excessErrorJson(const DiscoverFindings& f, const ExcessError& gap) {
+ordered_json excessErrorJson(const DiscoverFindings& f, const ExcessError& excess) {
   const double unit = f.wording.unit;
-  const std::string& end = f.wording.gapEnd;
+  const std::string& end = f.wording.errorEnd;
   ordered_json json;
-  json["rmse_nominal" + end] = orNull(unit * gap.nominal);
-  json["rmse_calibrated" + end] = orNull(unit * gap.calibrated);
-  json["rmse_after" + end] = orNull(unit * gap.after);
-  if (gap.expected) json["rmse_expected" + end] = orNull(unit * *gap.expected);
-  if (gap.probability) json["rmse_probability"] = orNull(*gap.probability);
-  json["noise_floor" + end] = orNull(unit * gap.floor);
+  json["rmse_nominal" + end] = orNull(unit * excess.nominal);
+  json["rmse_calibrated" + end] = orNull(unit * excess.calibrated);
+  json["rmse_after" + end] = orNull(unit * excess.after);
+  if (excess.expected) json["rmse_expected" + end] = orNull(unit * *excess.expected);
+  if (excess.probability) json["rmse_probability"] = orNull(*excess.probability);
+  json["noise_floor" + end] = orNull(unit * excess.floor);
   json["gap_closed"] =
-      gap.closedFromCalibrated ? orNull(*gap.closedFromCalibrated) : ordered_json(nullptr);
+      excess.closedFromCalibrated ? orNull(*excess.closedFromCalibrated) : ordered_json(nullptr);
   json["gap_closed_from_nominal"] =
-      gap.closedFromNominal ? orNull(*gap.closedFromNominal) : ordered_json(nullptr);
+      excess.closedFromNominal ? orNull(*excess.closedFromNominal) : ordered_json(nullptr);
   return json;
 }
 
@@ -126,12 +126,12 @@ ordered_json startJson(const DiscoverFindings& f, const bio::TrialStart& start) 
   return {{"coordinate", start.coordinate},
           {"value", orNull(start.value)},
           {"speed", orNull(start.speed)},
-          {"unit", at == axes.end() || at->unit == "deg" ? "rad" : "m"}};
+          {"unit", at == axes.end() || at->isTorque ? "rad" : "m"}};
 }
 
 ordered_json trialsJson(const DiscoverFindings& f) {
   const double unit = f.wording.unit;
-  const std::string& end = f.wording.gapEnd;
+  const std::string& end = f.wording.errorEnd;
   ordered_json list = ordered_json::array();
   for (const bio::discover::RepairedTrial& trial : f.written->trials) {
     const std::size_t i = trial.index;
@@ -164,16 +164,13 @@ void addEffects(const DiscoverFindings& f, ordered_json& json) {
     json["effects"].push_back({{"id", candidate.id},
                                {"name", candidate.name},
                                {"kind", info::discover::name(candidate.kind)},
-                               {"surrogate", verdict.proxy},
+                               {"surrogate", verdict.surrogate},
                                {"parameters", parametersJson(f, effect.estimates)},
                                {"log_bayes_factor", orNull(effect.logBayesFactor)},
                                {"probability", orNull(effect.probability)}});
     for (const Estimate& estimate : effect.estimates) {
-      if (f.data.quantities()[estimate.quantity].name == candidate.id + ".time") {
-        const char* change = candidate.id.ends_with("_until") ? "ends_at_s" : "starts_at_s";
-        if (candidate.kind == info::discover::EffectKind::structure)
-          json["effects"].back()[change] = orNull(estimate.value);
-      }
+      if (const auto at = f.wording.times.find(estimate.quantity); at != f.wording.times.end())
+        json["effects"].back()[at->second] = orNull(estimate.value);
     }
     for (const std::size_t c : effect.equals) json["class"].push_back(candidates[c].id);
   }
@@ -277,12 +274,12 @@ void addUnknown(const DiscoverFindings& f, ordered_json& json) {
                        {"same_in_every_trial", orNull(verdict.unknown->tie.share)},
                        {"step_at_s", orNull(verdict.unknown->tie.stepAt)},
                        {"step_explains", orNull(verdict.unknown->tie.stepShare)}};
-    const std::string& forceUnit = f.wording.axes.at(verdict.unknown->axis).forceUnit;
-    if (forceUnit == "N·m") {
+    const ShownAxis& axis = f.wording.axes.at(verdict.unknown->axis);
+    if (axis.isTorque) {
       json["unknown"]["rms_Nm"] = orNull(verdict.unknown->forceSize);
     } else {
       json["unknown"]["rms"] = orNull(verdict.unknown->forceSize);
-      json["unknown"]["rms_unit"] = forceUnit;
+      json["unknown"]["rms_unit"] = axis.forceUnit;
     }
     addAxis(f, verdict.unknown->axis, json["unknown"]);
   }
@@ -296,7 +293,7 @@ void addUnknown(const DiscoverFindings& f, ordered_json& json) {
             {"adequate", raced.after.adequate()},
             {"terms", ordered_json::array()},
             {"gap",
-             {{"train", excessErrorJson(f, raced.gap)},
+             {{"train", excessErrorJson(f, raced.excess)},
               {"held_out", raced.heldOut ? excessErrorJson(f, *raced.heldOut) : nullptr}}}};
     for (std::size_t k = 0; k < raced.values.size(); ++k)
       race["terms"].push_back({{"expression", raced.terms[k].expression},
@@ -308,7 +305,7 @@ void addUnknown(const DiscoverFindings& f, ordered_json& json) {
 
 /// Noise of the whole recording in one number, where there is one.
 void tellNoise(const DiscoverFindings& f, Summary& summary) {
-  const std::string& end = f.wording.gapEnd;
+  const std::string& end = f.wording.errorEnd;
   if (end != "_deg" && end != "_m" && end != "_N") {
     summary.set("outputs", outputsJson(f));
   } else {
@@ -334,8 +331,8 @@ void tellFindings(const DiscoverFindings& f, Summary& summary) {
     const std::string id = f.data.candidates()[effect.candidate].id;
     summary.set("effect." + id, parametersJson(f, effect.estimates));
   }
-  if (verdict.gap.closedFromCalibrated) {
-    summary.set("gap_closed_train", *verdict.gap.closedFromCalibrated);
+  if (verdict.excess.closedFromCalibrated) {
+    summary.set("gap_closed_train", *verdict.excess.closedFromCalibrated);
   }
   if (verdict.heldOut && verdict.heldOut->closedFromCalibrated) {
     summary.set("gap_closed_held_out", *verdict.heldOut->closedFromCalibrated);
@@ -362,7 +359,7 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   addEffects(f, json);
   addSizes(f, json["effects"]);
   json["localisation"] = localisationJson(f);
-  json["gap"] = {{"train", excessErrorJson(f, verdict.gap)},
+  json["gap"] = {{"train", excessErrorJson(f, verdict.excess)},
                  {"held_out", verdict.heldOut ? excessErrorJson(f, *verdict.heldOut) : nullptr}};
   json["held_out_fitted"] = verdict.heldOutFitted;
   if (verdict.replication) json["replication"] = replicationJson(f);

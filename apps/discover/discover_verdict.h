@@ -27,6 +27,7 @@ struct ShownAxis {
   std::string position;   ///< "angle", or "position" of one that slides
   std::string force;      ///< the latent force: "Torque [N·m]"
   std::string forceUnit;  ///< "N·m"
+  bool isTorque = false;  ///< the force on it; false: a force or an acceleration
   std::size_t place = 0;  ///< in EffectSize::moments
   /// Suffix of names in verdict.json: "_deg" or "_m".
   std::string end() const { return "_" + unit; }
@@ -37,17 +38,19 @@ struct DiscoverWording {
   std::vector<ShownOutput> outputs;  ///< by DiscoveryProblem::outputOfSample
   std::vector<ShownAxis> axes;       ///< by DiscoveryProblem::axes
   double unit = 1;                   ///< factor from internal RMS errors to shown ones
-  std::string gapUnit;  ///< their unit; "sd" if there are several outputs, whose errors are in
-                        ///< standard deviations of their noise
-  std::string gapEnd;   ///< suffix of names in verdict.json: "_deg", "_m", "_N", …, or "_sd"
-  std::string ofForce;  ///< unit of the latent force's size: "fraction of the muscles' moments"
-  std::string push;     ///< disturbance that a score tests: "a push"
+  std::string errorUnit;  ///< their unit; "sd" if there are several outputs, whose errors are in
+                          ///< standard deviations of their noise
+  std::string errorEnd;   ///< suffix of names in verdict.json: "_deg", "_m", "_N", …, or "_sd"
+  std::string ofForce;    ///< unit of the latent force's size: "fraction of the muscles' moments"
+  std::string push;       ///< disturbance that a score tests: "a push"
   std::string inputs, input;                   ///< "muscles", "muscle"
   std::string commands;                        ///< the inputs: "excitations"
   bool hasMap = true;                          ///< false: no score map over an axis and its rate
   std::map<std::string, std::string> present;  ///< effects that the model already has, and where
+  /// Name in verdict.json of a quantity that is the time of a change: "starts_at_s", "ends_at_s".
+  std::map<std::size_t, std::string> times;
 
-  bool isInNoise() const { return gapEnd == "_sd"; }
+  bool isInNoise() const { return errorEnd == "_sd"; }
   /// ", NAME" where there are several axes.
   std::string named(std::size_t axis) const {
     return axes.size() > 1 ? ", " + axes[axis].name : "";

@@ -14,21 +14,21 @@ using info::discover::ExcessError;
 
 enum class Outcome { noise, expected, none, share };
 
-Outcome outcomeOf(const ExcessError& gap) {
+Outcome outcomeOf(const ExcessError& excess) {
   // the same three deviations of a mean square as explainExcess() has
-  if (gap.after * gap.after < 1.2 * gap.floor * gap.floor) return Outcome::noise;
+  if (excess.after * excess.after < 1.2 * excess.floor * excess.floor) return Outcome::noise;
   // a held-out trial that was nearer to the model as it came has gained nothing
-  const bool isWorse = gap.expected && gap.after >= gap.nominal;
-  if (!gap.closedFromCalibrated || !(*gap.closedFromCalibrated > 0) || isWorse)
+  const bool isWorse = excess.expected && excess.after >= excess.nominal;
+  if (!excess.closedFromCalibrated || !(*excess.closedFromCalibrated > 0) || isWorse)
     return Outcome::none;
   const bool isExpected =
-      gap.expected && gap.after * gap.after < 1.2 * *gap.expected * *gap.expected;
-  return isExpected && *gap.closedFromCalibrated > 0.5 ? Outcome::expected : Outcome::share;
+      excess.expected && excess.after * excess.after < 1.2 * *excess.expected * *excess.expected;
+  return isExpected && *excess.closedFromCalibrated > 0.5 ? Outcome::expected : Outcome::share;
 }
 
 /// Whole per cent of what is neither all nor nothing.
-int percent(const ExcessError& gap) {
-  return std::clamp(static_cast<int>(std::lround(100 * *gap.closedFromCalibrated)), 1, 99);
+int percent(const ExcessError& excess) {
+  return std::clamp(static_cast<int>(std::lround(100 * *excess.closedFromCalibrated)), 1, 99);
 }
 
 }  // namespace
@@ -39,38 +39,38 @@ std::string symbolOf(const std::string& unit) {
   return unit == "sd" ? " sd of the noise" : " " + unit;
 }
 
-std::string excessErrorWords(const ExcessError& gap, double unit, const std::string& symbol,
+std::string excessErrorWords(const ExcessError& excess, double unit, const std::string& symbol,
                              bool heldOut) {
   const auto figure = [&](double value) { return numberText(unit * value, 2) + symbol; };
   const char* where = heldOut ? " on the held-out trial" : "";
-  switch (outcomeOf(gap)) {
+  switch (outcomeOf(excess)) {
     case Outcome::noise:
-      return fmt::format("The residual{} is at the noise floor ({}).", where, figure(gap.after));
+      return fmt::format("The residual{} is at the noise floor ({}).", where, figure(excess.after));
     case Outcome::expected:
       return fmt::format("The residual{} is {} expected ({}, expected {}).", where,
-                         gap.after > *gap.expected ? "about as large as" : "no larger than",
-                         figure(gap.after), figure(*gap.expected));
+                         excess.after > *excess.expected ? "about as large as" : "no larger than",
+                         figure(excess.after), figure(*excess.expected));
     case Outcome::share:
-      return fmt::format("{} % of the excess error is explained{}.", percent(gap), where);
+      return fmt::format("{} % of the excess error is explained{}.", percent(excess), where);
     case Outcome::none:
       break;
   }
-  const double expected = gap.expected.value_or(gap.floor);
+  const double expected = excess.expected.value_or(excess.floor);
   return heldOut
              ? fmt::format("The fit does not carry over to the held-out trial ({}, expected {}).",
-                           figure(gap.after), figure(expected))
+                           figure(excess.after), figure(expected))
              : fmt::format("None of the excess error is explained ({}, noise {}).",
-                           figure(gap.after), figure(gap.floor));
+                           figure(excess.after), figure(excess.floor));
 }
 
-std::string excessErrorCell(const ExcessError& gap) {
-  switch (outcomeOf(gap)) {
+std::string excessErrorCell(const ExcessError& excess) {
+  switch (outcomeOf(excess)) {
     case Outcome::noise:
       return "at the noise floor";
     case Outcome::expected:
       return "as expected";
     case Outcome::share:
-      return fmt::format("{} %", percent(gap));
+      return fmt::format("{} %", percent(excess));
     case Outcome::none:
       break;
   }

@@ -11,11 +11,11 @@ namespace app {
 /// fit does not carry over to the held-out trial (3.2°, expected 0.6°)."
 /// @param unit factor from internal to shown values
 /// @param symbol symbol after a value, "°" or " N"
-std::string excessErrorWords(const info::discover::ExcessError& gap, double unit,
+std::string excessErrorWords(const info::discover::ExcessError& excess, double unit,
                              const std::string& symbol, bool heldOut);
 
 /// The excess error as a cell of a table: "at the noise floor", "87 %", "none".
-std::string excessErrorCell(const info::discover::ExcessError& gap);
+std::string excessErrorCell(const info::discover::ExcessError& excess);
 
 /// "°" for deg, " sd of the noise" for sd, else the unit after a space.
 std::string symbolOf(const std::string& unit);

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "bio/discovery/workflow.h"
+#include "bio/model/units.h"
 #include "discover/discover_results.h"
 #include "discover/discover_search.h"
 #include "discover/proposed_experiments_text.h"
@@ -16,7 +17,6 @@
 #include "options/input_rules.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
-#include "output/angle_unit.h"
 #include "report/result.h"
 
 namespace app {
@@ -24,7 +24,7 @@ namespace {
 
 ShownOutput shownOf(const bio::Observable& what, const bio::Model& model) {
   const std::string unit = bio::unitOf(what, model);
-  if (unit == "rad") return {bio::nameOf(what), "deg", degreesPerRadian};
+  if (unit == "rad") return {bio::nameOf(what), "deg", bio::degreesPerRadian};
   return {bio::nameOf(what), unit, 1};
 }
 
@@ -45,21 +45,25 @@ DiscoverWording wordingOf(const bio::discover::MusculoskeletalProblem& data,
   for (const bio::discover::MovingCoordinate& at : model.coordinates()) {
     wording.axes.push_back(
         at.coordinate.isRotation
-            ? ShownAxis{at.coordinate.name, "deg", degreesPerRadian, "angle", "Torque [N·m]", "N·m"}
+            ? ShownAxis{at.coordinate.name, "deg", bio::degreesPerRadian, "angle", "Torque [N·m]",
+                        "N·m"}
             : ShownAxis{at.coordinate.name, "m", 1, "position", "Force [N]", "N"});
+    wording.axes.back().isTorque = at.coordinate.isRotation;
     wording.axes.back().place = static_cast<std::size_t>(at.index);
   }
   const ShownOutput& first = wording.outputs.front();
   const bool isOne = wording.outputs.size() == 1;
   wording.unit = isOne ? first.scale : 1 / verdict.sds.sd(0);
-  wording.gapUnit = isOne ? first.unit : "sd";
-  wording.gapEnd = isOne ? endOf(first.unit) : "_sd";
+  wording.errorUnit = isOne ? first.unit : "sd";
+  wording.errorEnd = isOne ? endOf(first.unit) : "_sd";
   wording.ofForce = "fraction of the muscles' moments";
   wording.push = "a push";
   wording.inputs = "muscles";
   wording.input = "muscle";
   wording.commands = "excitations";
   wording.present = model.present();
+  for (const bio::discover::TimedForce& force : model.timedForces())
+    wording.times[force.time] = force.ends ? "ends_at_s" : "starts_at_s";
   return wording;
 }
 

@@ -88,15 +88,15 @@ class DiscoveryWriter {
     }
     if (std::isnan(trial.after)) return;
     const double unit = wording_.unit;
-    const double tolerance = wording_.gapEnd == "_deg" ? 0.01
-                             : wording_.gapEnd == "_m" ? 1e-5
-                                                       : 0.02 * unit * trial.floor;
+    const double tolerance = wording_.errorEnd == "_deg" ? 0.01
+                             : wording_.errorEnd == "_m" ? 1e-5
+                                                         : 0.02 * unit * trial.floor;
     if (unit * std::abs(trial.after - trial.fitted) <= tolerance) return;
     summary_.warn(fmt::format(
         "{}: the written model replays with an RMS error of {}, the search itself had {}; the "
         "report gives the value of the replay",
-        files_[trial.index], withUnit(unit * trial.after, wording_.gapUnit),
-        withUnit(unit * trial.fitted, wording_.gapUnit)));
+        files_[trial.index], withUnit(unit * trial.after, wording_.errorUnit),
+        withUnit(unit * trial.fitted, wording_.errorUnit)));
   }
 
   void tellCommands() {

@@ -5,13 +5,13 @@
 
 #include "bio/analysis/path_postures.h"
 #include "bio/analysis/replay.h"
+#include "bio/model/units.h"
 #include "command/command.h"
 #include "moment_arms/fit_command.h"
 #include "moment_arms/path_jumps.h"
 #include "options/number_rules.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
-#include "output/angle_unit.h"
 #include "output/text.h"
 #include "report/result.h"
 
@@ -63,7 +63,7 @@ class MomentArms : public Command {
     const bio::Skeleton skeleton(model, options);
     for (const std::string& remark : lockRemarks(model, options)) summary.warn(remark);
     const bio::Coordinate& coordinate = skeleton.coordinates().front();
-    const double unit = coordinate.isRotation ? radiansPerDegree : 1e-3;
+    const double unit = coordinate.isRotation ? bio::radiansPerDegree : 1e-3;
     const double first = from_ ? *from_ : coordinate.rangeMin / unit;
     const double last = to_ ? *to_ : coordinate.rangeMax / unit;
     require(points_ >= 2 && points_ <= 1000000,
@@ -84,7 +84,7 @@ class MomentArms : public Command {
             fmt::format("{}: coordinate '{}' changes the length of no muscle", model_,
                         coordinate.name));
 
-    const std::string unitName = coordinate.isRotation ? "deg" : "mm";
+    const std::string unitName = bio::positionUnit(coordinate.isRotation).name;
     folder.writeFile("moment_arms.csv", [&](const std::filesystem::path& path) {
       bio::writeTable(tableOf(sample, shown, coordinate.name + "_" + unitName), path);
     });

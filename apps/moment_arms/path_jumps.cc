@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "output/angle_unit.h"
+#include "bio/model/units.h"
 #include "output/text.h"
 
 namespace app {
@@ -11,11 +11,11 @@ namespace {
 
 /// [deg] or [mm]
 double shownValue(double value, bool turns) {
-  return turns ? value / radiansPerDegree : 1000 * value;
+  return turns ? value / bio::radiansPerDegree : 1000 * value;
 }
 
 std::string unitOf(bool turns) {
-  return turns ? "deg" : "mm";
+  return bio::positionUnit(turns).name;
 }
 
 std::string inMillimetres(double length) {

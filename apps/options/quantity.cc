@@ -4,8 +4,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
+
+#include "bio/model/units.h"
 
 namespace app {
 
@@ -25,7 +26,7 @@ double parseAngle(std::string_view text) {
   std::string_view number = text;
   double unit = 1;
   if (text.ends_with("deg")) {
-    unit = std::numbers::pi / 180;
+    unit = bio::radiansPerDegree;
     number.remove_suffix(3);
   } else if (text.ends_with("rad")) {
     number.remove_suffix(3);

@@ -36,6 +36,10 @@ double SimulationOptions::stepOrDefault() const {
   return step.value_or(bio::defaultStep(bio::integratorNamed(integrator).value()));
 }
 
+bool SimulationOptions::isVariational() const {
+  return bio::isVariational(bio::integratorNamed(integrator).value());
+}
+
 nlohmann::ordered_json settingsOf(const SimulationOptions& options) {
   const auto listed = [](const std::vector<Assignment>& assignments) {
     nlohmann::ordered_json list = nlohmann::ordered_json::object();

@@ -33,6 +33,8 @@ struct SimulationOptions {
 
   /// Δt [s]: as given, else the integrator's own.
   double stepOrDefault() const;
+  /// Whether the integrator is a variational one, which alone have sensitivities.
+  bool isVariational() const;
 };
 
 void addSimulationOptions(CLI::App& subcommand, SimulationOptions& options);

@@ -95,8 +95,9 @@ MeasuredNames measuredIn(const std::vector<std::string>& trials, const bio::Mode
     const bio::Trial trial = bio::readTrial(
         file, model, {.ignoreExtra = options.ignoreExtra, .experimentalConditions = true});
     for (const bio::MeasuredChannel& channel : trial.measured) {
-      if (channel.what.isCoordinate()) names.coordinates.insert(channel.what.of);
-      if (channel.what.kind == bio::Observable::Kind::moment) names.moments.insert(channel.what.of);
+      if (channel.what.isCoordinate()) names.coordinates.insert(channel.what.object);
+      if (channel.what.kind == bio::Observable::Kind::moment)
+        names.moments.insert(channel.what.object);
     }
   }
   return names;

@@ -5,8 +5,8 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "bio/model/units.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
@@ -87,12 +87,12 @@ Report reportOn(const RenderOptions& options, const MovingSystem& system,
   for (const bio::Coordinate& coordinate : system.poser().skeleton().coordinates()) {
     const auto found = motion.coordinates.find(coordinate.name);
     if (found == motion.coordinates.end()) continue;
-    const double unit = coordinate.isRotation ? 180 / std::numbers::pi : 1e3;
-    const Eigen::VectorXd values = found->second * unit;
+    const bio::ShownUnit unit = bio::positionUnit(coordinate.isRotation);
+    const Eigen::VectorXd values = found->second * unit.factor;
     report.details.push_back(Figure{
         .title = coordinate.name,
         .xLabel = "Time [s]",
-        .yLabel = fmt::format("{} [{}]", coordinate.name, coordinate.isRotation ? "deg" : "mm"),
+        .yLabel = fmt::format("{} [{}]", coordinate.name, unit.name),
         .series = {{.name = coordinate.name, .x = times, .y = {values.begin(), values.end()}}}});
   }
   return report;

@@ -75,9 +75,8 @@ class Replay : public Command {
     const bio::Trajectory& motion = replay.motion;
     const std::optional<bio::LeftRange> left = bio::leftRange(system, motion);
     if (left) summary.warn(left->what);
-    for (const std::string& sentence : bio::rangeRemarks(system, motion)) {
-      const bool isSaid = left && sentence.starts_with(left->name + " leaves its range");
-      if (!isSaid) summary.warn(sentence);
+    for (const bio::LeftRange& coordinate : bio::leftRanges(system, motion)) {
+      if (!left || left->name != coordinate.name) summary.warn(coordinate.what);
     }
     const std::optional<bio::StepEffect> effect =
         bio::effectOfDoubtfulStep(system, trial, replay, simulation_.step.has_value());

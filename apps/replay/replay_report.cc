@@ -5,17 +5,17 @@
 #include <algorithm>
 
 #include "bio/analysis/replay.h"
+#include "bio/model/units.h"
 #include "bio/observation/observed_motion.h"
 #include "bio/simulation/integrator_names.h"
-#include "output/angle_unit.h"
 #include "output/text.h"
 
 namespace app {
 namespace {
 
 /// Angles are shown in degrees, positions in mm.
-ShownUnit unitOf(const bio::Coordinate& coordinate) {
-  return coordinate.isRotation ? ShownUnit{degreesPerRadian, "deg"} : ShownUnit{1e3, "mm"};
+bio::ShownUnit unitOf(const bio::Coordinate& coordinate) {
+  return bio::positionUnit(coordinate.isRotation);
 }
 
 std::vector<double> inUnit(const Eigen::VectorXd& values, double factor) {
@@ -29,7 +29,7 @@ const bio::MeasuredChannel* measuredOf(const ReplayFindings& f, const std::strin
 
 Figure motionFigure(const ReplayFindings& f, std::size_t index) {
   const bio::Coordinate& coordinate = f.system.skeleton().coordinates()[index];
-  const ShownUnit unit = unitOf(coordinate);
+  const bio::ShownUnit unit = unitOf(coordinate);
   Figure figure{.title = fmt::format("Simulated {}", coordinate.name),
                 .xLabel = "Time [s]",
                 .yLabel = fmt::format("{} [{}]", coordinate.name, unit.name)};
@@ -169,7 +169,7 @@ std::string comparison(const ReplayFindings& f) {
   for (const bio::Coordinate& coordinate : f.system.skeleton().coordinates()) {
     const auto* measured = measuredOf(f, coordinate.name);
     if (measured == nullptr) continue;
-    const ShownUnit unit = unitOf(coordinate);
+    const bio::ShownUnit unit = unitOf(coordinate);
     const bio::MeasuredError error = bio::compareWithMeasured(f.system, f.replay.motion, *measured);
     text += fmt::format(
         "{}{} differs from the measurement by {:.3g} {} (RMS over {} samples), at most {:.3g} {} "
@@ -204,7 +204,7 @@ nlohmann::ordered_json channelErrors(const ReplayFindings& f) {
   };
   for (const auto& [name, error] : f.replay.errors) {
     const bool turns = bio::findCoordinate(f.model, name).isRotation;
-    add(name, error, turns ? degreesPerRadian : 1, turns ? "deg" : "m");
+    add(name, error, turns ? bio::degreesPerRadian : 1, turns ? "deg" : "m");
   }
   for (const bio::ChannelError& error : f.replay.channelErrors) {
     add(bio::nameOf(error.what), error.error, 1, bio::unitOf(error.what, f.model));

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <fstream>
 
+#include "bio/model/units.h"
 #include "discover/discover_results.h"
 #include "discover/discover_search.h"
 #include "discover/suggested_experiments.h"
 #include "info/version.h"
 #include "options/input_rules.h"
 #include "options/number_rules.h"
-#include "output/angle_unit.h"
 #include "output/json_text.h"
 #include "output/text.h"
 #include "report/result.h"
@@ -54,14 +54,14 @@ DiscoverWording wordingOf(const RobotProblem& data) {
     const bool isAngle = channel.unit == "rad";
     angles = angles && isAngle;
     wording.outputs.push_back(
-        {channel.name, isAngle ? "deg" : channel.unit, isAngle ? degreesPerRadian : 1});
+        {channel.name, isAngle ? "deg" : channel.unit, isAngle ? bio::degreesPerRadian : 1});
   }
   const ShownOutput first = wording.outputs.front();
   wording.axes = {
       {first.name, first.unit, first.scale, "angle", "Acceleration of the cart [m/s²]", "m/s²"}};
-  wording.unit = angles ? degreesPerRadian : 1;
-  wording.gapUnit = first.unit;
-  wording.gapEnd = angles ? "_deg" : "_N";
+  wording.unit = angles ? bio::degreesPerRadian : 1;
+  wording.errorUnit = first.unit;
+  wording.errorEnd = angles ? "_deg" : "_N";
   wording.ofForce = "an acceleration of the cart [m/s²]";
   wording.push = "an extra acceleration of the cart";
   wording.inputs = "inputs";
@@ -189,7 +189,7 @@ class RobotSearch {
     asked.without = request_.without;
     for (std::size_t c = 0; c < request_.noise.size(); ++c) {
       const bool isAngle = c < channels.size() && channels[c].unit == "rad";
-      asked.sds.push_back(isAngle ? request_.noise[c] * radiansPerDegree : request_.noise[c]);
+      asked.sds.push_back(isAngle ? request_.noise[c] * bio::radiansPerDegree : request_.noise[c]);
     }
     return asked;
   }

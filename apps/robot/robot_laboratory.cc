@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
+#include "bio/model/units.h"
 #include "output/text.h"
 
 namespace app {
@@ -52,7 +51,7 @@ void tellLaboratory(const info::robot::LaboratoryComparison& found, const Thesis
       "plane, dry friction of {} N m, lag of the cart's speed of {} s, disturbance of its "
       "acceleration of {} m/s², sensor nonlinearity of {} at full range, and sensor resolution of "
       "{}.",
-      numberText(effects.outOfPlane * 180 / std::numbers::pi, 3), numberText(effects.dryFriction),
+      numberText(effects.outOfPlane * bio::degreesPerRadian, 3), numberText(effects.dryFriction),
       numberText(effects.controlLag), numberText(effects.controlNoise),
       percent(effects.sensorCurvature), numberText(effects.sensorStep, 3))});
   const std::string first = label(slow.problem.parameters()[0]),

@@ -54,8 +54,9 @@ void tellPendulumInSteps(const MotionResult& found, int stepsPerSample, Summary&
   Table trials{.title = fmt::format("{} simulated experiments and the bound", slow.trials.size()),
                .columns = {"", "m1 m1 [kg²]", "m1 c [kg·10e-3 kg m²/s]", "c c [(10e-3 kg m²/s)²]"},
                .rows = {}};
-  const auto row = [&](const char* what, const MatrixXd& of) {
-    trials.rows.push_back({what, numberText(of(0, 0)), numberText(of(0, 1)), numberText(of(1, 1))});
+  const auto row = [&](const char* what, const MatrixXd& matrix) {
+    trials.rows.push_back(
+        {what, numberText(matrix(0, 0)), numberText(matrix(0, 1)), numberText(matrix(1, 1))});
   };
   row("Cramér–Rao bound, start", boundBefore);
   row("Monte Carlo, start", slow.covariance);

@@ -188,8 +188,7 @@ class Sensitivity : public Command {
     if ((!profile_.empty() || !global_.empty()) && names_.empty()) {
       throw std::invalid_argument("--profile and --global require --parameters NAMES");
     }
-    const bool isVariational = simulation_.integrator.starts_with("vi");
-    if ((all_ || !names_.empty()) && !isVariational) {
+    if ((all_ || !names_.empty()) && !simulation_.isVariational()) {
       throw std::invalid_argument(
           fmt::format("--integrator {}: must be vi or vi-left, which alone have sensitivities",
                       simulation_.integrator));
@@ -208,7 +207,7 @@ class Sensitivity : public Command {
                                     std::optional<std::size_t> swept) const {
     std::vector<std::string> names = names_;
     if (all_) names.insert(names.begin(), "all");
-    if (names.empty() && swept && simulation_.integrator.starts_with("vi")) {
+    if (names.empty() && swept && simulation_.isVariational()) {
       return {*swept};
     }
     return catalogue.select(names);

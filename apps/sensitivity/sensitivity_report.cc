@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include "bio/model/units.h"
 #include "output/json_text.h"
 #include "output/text.h"
 
@@ -58,7 +58,7 @@ Figure sweepFigure(const SensitivityFindings& f, const bio::Sweep& sweep) {
 }
 
 Table sweepTable(const SensitivityFindings& f, const bio::Sweep& sweep) {
-  const char* unit = shownUnit(f.coordinate);
+  const std::string unit = shownUnit(f.coordinate);
   Table table{.title = "Change in the motion",
               .columns = {fmt::format("{} [{}]", sweep.parameter.name,
                                       sweep.parameter.unit.empty() ? "1" : sweep.parameter.unit),
@@ -135,7 +135,7 @@ Figure profileFigure(const bio::ProfileFinding& finding) {
 }
 
 Table globalTable(const SensitivityFindings& f) {
-  const char* unit = shownUnit(f.coordinate);
+  const std::string unit = shownUnit(f.coordinate);
   Table table{.title = "Global sensitivity over the prior range", .columns = {"parameter"}};
   if (f.global.morris) {
     table.columns.push_back(fmt::format("Morris μ* [{}]", unit));
@@ -180,9 +180,9 @@ std::string channelWords(const SensitivityFindings& f, const bio::ChannelCandida
   using Kind = bio::Observable::Kind;
   const bool isAngle =
       (channel.what.kind == Kind::coordinate || channel.what.kind == Kind::speed) &&
-      bio::findCoordinate(*f.model, channel.what.of).isRotation;
+      bio::findCoordinate(*f.model, channel.what.object).isRotation;
   const std::string unit = bio::unitOf(channel.what, *f.model);
-  const double factor = isAngle ? 180 / std::numbers::pi : 1;
+  const double factor = isAngle ? bio::degreesPerRadian : 1;
   return fmt::format(
       "{} ({})", bio::nameOf(channel.what),
       isAngle ? withUnit(channel.sd * factor, channel.what.kind == Kind::speed ? "deg/s" : "deg")
@@ -265,10 +265,10 @@ std::vector<std::size_t> ranking(const Eigen::VectorXd& score) {
 }
 
 double shownFactor(const bio::Coordinate& coordinate) {
-  return coordinate.isRotation ? 180 / std::numbers::pi : 1e3;
+  return bio::positionUnit(coordinate.isRotation).factor;
 }
-const char* shownUnit(const bio::Coordinate& coordinate) {
-  return coordinate.isRotation ? "deg" : "mm";
+std::string shownUnit(const bio::Coordinate& coordinate) {
+  return bio::positionUnit(coordinate.isRotation).name;
 }
 
 void tellSensitivity(const SensitivityFindings& f, Summary& summary) {

@@ -40,7 +40,7 @@ struct SensitivityFindings {
 
 /// Degrees for a rotation, millimetres for a translation.
 double shownFactor(const bio::Coordinate& coordinate);
-const char* shownUnit(const bio::Coordinate& coordinate);
+std::string shownUnit(const bio::Coordinate& coordinate);
 
 /// Indices by falling score.
 std::vector<std::size_t> ranking(const Eigen::VectorXd& score);

@@ -57,14 +57,14 @@ std::string verdictOf(const StudyFindings& f) {
 
 Figure errorsFigure(const StudyFindings& f) {
   const bool isHeldOut = median(f, "rmse_held_out_deg").has_value();
-  const std::string of = isHeldOut ? "held_out" : "train";
+  const std::string role = isHeldOut ? "held_out" : "train";
   Figure figure{.title = isHeldOut ? "Held-out error of each subject" : "Error of each subject",
                 .xLabel = "Subject, in the order of the table [1]",
                 .yLabel = "RMS error [deg]",
                 .caption = fmt::format("On {} trials, with the model as given and as calibrated.",
                                        isHeldOut ? "held-out" : "training")};
-  for (const auto& [name, column] : {std::pair{"model as given", "rmse_" + of + "_before_deg"},
-                                     std::pair{"calibrated", "rmse_" + of + "_deg"}}) {
+  for (const auto& [name, column] : {std::pair{"model as given", "rmse_" + role + "_before_deg"},
+                                     std::pair{"calibrated", "rmse_" + role + "_deg"}}) {
     Series series{.name = name, .style = SeriesStyle::points};
     for (std::size_t i = 0; i < f.rows.size(); ++i) {
       series.x.push_back(static_cast<double>(i + 1));

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "bio/model/units.h"
 #include "bio/simulation/simulate.h"
 #include "bio/tables/table_file.h"
 #include "bio/tables/unknown_column.h"
@@ -150,7 +150,7 @@ SystemMotion readSystemMotion(const std::filesystem::path& file, const Model& mo
         if (coordinateOf(model, "", meaning.name)->isRotation &&
             (meaning.unit == Unit::degrees ||
              (meaning.unit == Unit::asHeader && table.inDegrees))) {
-          values *= std::numbers::pi / 180;
+          values *= radiansPerDegree;
         }
         motion.coordinates[meaning.name] = values;
         break;
@@ -201,14 +201,14 @@ SkeletonOptions skeletonFor(const Model& model, const std::vector<const SystemMo
 namespace {
 
 /// Slopes of a course over the 20 ms about each time that it has, for muscles with rigid tendons.
-Eigen::RowVectorXd slopes(const Eigen::VectorXd& of, const Eigen::VectorXd& values,
+Eigen::RowVectorXd slopes(const Eigen::VectorXd& given, const Eigen::VectorXd& values,
                           const Eigen::VectorXd& times) {
   constexpr double half = 0.01;  // [s]
-  const double first = of[0], last = of[of.size() - 1];
+  const double first = given[0], last = given[given.size() - 1];
   return times
       .unaryExpr([&](double t) {
         const double from = std::max(first, t - half), to = std::min(last, t + half);
-        return to > from ? (valueAt(of, values, to) - valueAt(of, values, from)) / (to - from)
+        return to > from ? (valueAt(given, values, to) - valueAt(given, values, from)) / (to - from)
                          : 0.0;
       })
       .transpose();

@@ -23,10 +23,11 @@ py::dict estimatesOf(const DiscoveryProblem& data, const std::vector<Estimate>& 
   return all;
 }
 
-py::object excessErrorOf(const ExcessError& gap) {
-  return results("nominal"_a = gap.nominal, "calibrated"_a = gap.calibrated, "after"_a = gap.after,
-                 "expected"_a = gap.expected, "probability"_a = gap.probability,
-                 "noise_floor"_a = gap.floor, "closed"_a = gap.closedFromCalibrated);
+py::object excessErrorOf(const ExcessError& excess) {
+  return results("nominal"_a = excess.nominal, "calibrated"_a = excess.calibrated,
+                 "after"_a = excess.after, "expected"_a = excess.expected,
+                 "probability"_a = excess.probability, "noise_floor"_a = excess.floor,
+                 "closed"_a = excess.closedFromCalibrated);
 }
 
 /// The unknown effect, and the formula that was compared for it.
@@ -42,7 +43,7 @@ py::object unknownOf(const DiscoveryProblem& data, const Verdict& verdict) {
     raced = results("formula"_a = race.text, "wins"_a = race.wins, "terms"_a = terms,
                     "log_bayes_factor"_a = race.logBayesFactor,
                     "amplitude_over_sd"_a = race.significance, "adequate"_a = race.after.adequate(),
-                    "gap"_a = excessErrorOf(race.gap),
+                    "gap"_a = excessErrorOf(race.excess),
                     "gap_held_out"_a = race.heldOut ? excessErrorOf(*race.heldOut) : py::none());
   }
   const info::discover::Unknown& unknown = *verdict.unknown;
@@ -114,8 +115,8 @@ py::dict verdictMembers(const DiscoveryProblem& data, const info::discover::Step
   }
   return py::dict(
       "verdict"_a = info::discover::name(verdict.finding), "sentence"_a = verdict.sentence,
-      "surrogate"_a = verdict.proxy, "probability_vetoed"_a = verdict.vetoed,
-      "gap"_a = excessErrorOf(verdict.gap),
+      "surrogate"_a = verdict.surrogate, "probability_vetoed"_a = verdict.vetoed,
+      "gap"_a = excessErrorOf(verdict.excess),
       "gap_held_out"_a = verdict.heldOut ? excessErrorOf(*verdict.heldOut) : py::none(),
       "held_out_fitted"_a = verdict.heldOutFitted,
       "replicated"_a = verdict.replication ? py::cast(verdict.replication->replicated) : py::none(),

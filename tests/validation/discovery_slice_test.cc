@@ -8,9 +8,9 @@
 
 #include <chrono>
 
+#include "bio/model/units.h"
 #include "discover/discover_verdict.h"
 #include "generator/data_set.h"
-#include "output/angle_unit.h"
 #include "reduced/reduced_plan.h"
 #include "robots/hidden_robots.h"
 #include "score/discovery_score.h"
@@ -39,10 +39,10 @@ OnReducedElbow verdictOnReducedElbow(const reduced::Plan& plan, bool leaveOut) {
   const info::discover::Verdict verdict = info::discover::run(elbow, options);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   app::DiscoverWording wording;
-  wording.outputs = {{"elbow", "deg", app::degreesPerRadian}};
-  wording.axes = {{"elbow", "deg", app::degreesPerRadian, "angle", "Torque [N·m]", "N·m"}};
-  wording.unit = app::degreesPerRadian;
-  wording.gapEnd = "_deg";
+  wording.outputs = {{"elbow", "deg", bio::degreesPerRadian}};
+  wording.axes = {{"elbow", "deg", bio::degreesPerRadian, "angle", "Torque [N·m]", "N·m"}};
+  wording.unit = bio::degreesPerRadian;
+  wording.errorEnd = "_deg";
   wording.inputs = "muscles";
   const std::string name = plan.suite + " " + std::to_string(plan.seed);
   const auto fitted = info::discover::fittedNumbers(elbow, verdict);

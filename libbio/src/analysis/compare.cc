@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "analysis/compare_runs.h"
+#include "bio/model/units.h"
 
 namespace bio {
 namespace {
@@ -149,7 +150,6 @@ ConvergedReference Runs::makeReference() const {
 }
 
 void Runs::confirm(ConvergedReference& reference) const {
-  constexpr double degree = std::numbers::pi / 180;
   const double limit = options_->usefulError / 20;
   // a step that is fine enough for most motions, then what only long or unstable ones need
   for (const double step : {1e-3, 2.5e-4, 1e-4}) {
@@ -168,7 +168,7 @@ void Runs::confirm(ConvergedReference& reference) const {
     reference.whyDisputed = fmt::format(
         "cvode and vi at {:g} s differ by {:.3g} deg RMS, and by more than {:.2g} deg from {:.4g} "
         "s on",
-        step, reference.second.rms / degree, limit / degree,
+        step, reference.second.rms / radiansPerDegree, limit / radiansPerDegree,
         firstBeyond(*system_, motion, reference.motion, limit));
   }
 }
@@ -210,11 +210,11 @@ CompareCell Runs::cell(Integrator integrator, double step) const {
     if (integrator == Integrator::rungeKutta4 && !(cell.error.rms < options_->usefulError)) {
       cell.outcome = Outcome::unstable;
       cell.failedAt = firstBeyond(*system_, motion, reference_->motion, options_->usefulError);
-      constexpr double degree = std::numbers::pi / 180;
       cell.why = fmt::format(
           "unstable at t = {:.6g} s: bounded, but the error exceeds {:.3g} deg for the first time; "
           "{:.3g} deg RMS",
-          cell.failedAt, options_->usefulError / degree, cell.error.rms / degree);
+          cell.failedAt, options_->usefulError / radiansPerDegree,
+          cell.error.rms / radiansPerDegree);
     }
     // short runs are repeated more often: a single interruption would outweigh them
     constexpr double enough = 0.1;  // [s]

@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "analysis/compare_runs.h"
+#include "bio/model/units.h"
 
 namespace bio {
 namespace compare {
@@ -15,8 +15,7 @@ std::string Runs::fault(Integrator integrator, double step) const {
   if (motion.outcome != Outcome::completed) return motion.why;
   const double rms = sd(*system_, motion, reference_->motion).rms;
   if (rms < options_->usefulError) return "";
-  constexpr double degree = std::numbers::pi / 180;
-  return fmt::format("reaches the end with an RMS error of {:.3g} deg", rms / degree);
+  return fmt::format("reaches the end with an RMS error of {:.3g} deg", rms / radiansPerDegree);
 }
 
 StepLimit Runs::limit(Integrator integrator) const {

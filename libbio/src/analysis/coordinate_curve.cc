@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "bio/analysis/replay.h"
+#include "bio/model/units.h"
 #include "bio/tables/file_error.h"
 #include "bio/tables/table_file.h"
 
@@ -35,7 +35,7 @@ CoordinateCurve readCoordinate(const std::filesystem::path& statesFile,
                        ((table.inDegrees && found != name + "_rad") || found == name + "_deg");
   const Eigen::VectorXd times = timesOf(table);
   const Eigen::VectorXd values =
-      table.values.col(columnIndex(table, found)) * (degrees ? std::numbers::pi / 180 : 1.0);
+      table.values.col(columnIndex(table, found)) * (degrees ? radiansPerDegree : 1.0);
   return {{times.begin(), times.end()}, {values.begin(), values.end()}};
 }
 

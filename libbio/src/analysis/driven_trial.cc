@@ -87,7 +87,7 @@ Table drivenTable(const Trial& trial, const MusculoskeletalSystem& system,
 Trial drivenTrial(const Table& driven, const Trial& recorded, const Model& model) {
   TrialOptions options{.experimentalConditions = true};
   for (const MeasuredChannel& course : recorded.prescribed)
-    if (course.times.size() > 1) options.prescribed.push_back(course.what.of);
+    if (course.times.size() > 1) options.prescribed.push_back(course.what.object);
   Trial trial = trialFrom(driven, recorded.file, model, options);
   trial.prescribed = recorded.prescribed;  // with those that are held
   return trial;

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
+#include "bio/model/units.h"
 #include "info/probability/quantile.h"
 
 namespace bio {
@@ -65,7 +65,7 @@ SobolFinding sobolOf(const std::vector<double>& values, int parameters, std::uin
 }
 
 bool leavesRange(const Coordinate& coordinate, double lowest, double highest) {
-  const double least = coordinate.isRotation ? std::numbers::pi / 180 : 1e-3;
+  const double least = coordinate.isRotation ? radiansPerDegree : 1e-3;
   const double margin = std::max(0.1 * (coordinate.rangeMax - coordinate.rangeMin), least);
   return lowest < coordinate.rangeMin - margin || highest > coordinate.rangeMax + margin;
 }

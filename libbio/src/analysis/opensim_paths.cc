@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <stdexcept>
 
+#include "bio/model/units.h"
 #include "bio/path/opensim_rule.h"
 #include "bio/path/path_lengths.h"
 #include "bio/path/posture_samples.h"
@@ -142,7 +142,7 @@ void compareAlong(BothLengths& lengths, double from, double to, OpenSimDifferenc
 }
 
 double shown(double value, bool turns) {
-  return turns ? value * 180 / std::numbers::pi : 1000 * value;
+  return value * positionUnit(turns).factor;
 }
 
 }  // namespace

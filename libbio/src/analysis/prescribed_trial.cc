@@ -48,7 +48,7 @@ PrescribedMotion prescribedMotionOf(const Trial& trial, const MusculoskeletalSys
     const std::string& name = system.skeleton().coordinates()[static_cast<std::size_t>(k)].name;
     const auto at =
         std::find_if(trial.prescribed.begin(), trial.prescribed.end(),
-                     [&](const MeasuredChannel& course) { return course.what.of == name; });
+                     [&](const MeasuredChannel& course) { return course.what.object == name; });
     if (const Function* own = system.courseOf(k); own && at == trial.prescribed.end()) {
       motion.add(k, *own);
       continue;
@@ -71,7 +71,7 @@ void smoothPrescribed(Trial& trial, double cutoff) {
 std::vector<std::string> roughnessRemarks(const Trial& trial, const Model& model) {
   std::vector<std::string> remarks;
   for (const MeasuredChannel& course : trial.prescribed) {
-    if (course.times.size() < 8 || !findCoordinate(model, course.what.of).isRotation) continue;
+    if (course.times.size() < 8 || !findCoordinate(model, course.what.object).isRotation) continue;
     const double raw = meanAcceleration(course);
     const double smooth = meanAcceleration(smoothedCourse(course, usualCutoff));
     if (raw < roughAcceleration || raw < 3 * smooth) continue;
@@ -79,7 +79,7 @@ std::vector<std::string> roughnessRemarks(const Trial& trial, const Model& model
         "{}: the prescribed '{}' has an acceleration of {:.3g} rad/s² (root mean square), of which "
         "{:.3g} rad/s² is below {} Hz: if the rest is noise of the sensor, smooth it with "
         "--prescribe-cutoff {}",
-        trial.file, course.what.of, raw, smooth, usualCutoff, usualCutoff));
+        trial.file, course.what.object, raw, smooth, usualCutoff, usualCutoff));
   }
   return remarks;
 }

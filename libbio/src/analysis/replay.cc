@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <functional>
-#include <numbers>
 #include <optional>
 
 #include "analysis/initial_speed.h"
+#include "bio/model/units.h"
 #include "bio/observation/observed_motion.h"
 #include "bio/simulation/integrator_names.h"
 #include "simulation/integrators.h"
@@ -144,9 +144,8 @@ TrialBeginning beginningOf(const Trial& trial, const Model& model,
 
 double stepOf(const Model& model, Integrator integrator, const std::optional<double>& given) {
   if (given) return *given;
-  const bool isVariational =
-      integrator == Integrator::variational || integrator == Integrator::variationalLeft;
-  return isVariational && model.fitted.step ? *model.fitted.step : defaultStep(integrator);
+  return isVariational(integrator) && model.fitted.step ? *model.fitted.step
+                                                        : defaultStep(integrator);
 }
 
 std::vector<double> observedTimes(const Trial& trial, const std::string& coordinate, double step) {
@@ -184,10 +183,10 @@ MeasuredError errorOf(const Eigen::VectorXd& times, const Eigen::VectorXd& simul
 
 MeasuredError compareWithMeasured(const MusculoskeletalSystem& system, const Trajectory& trajectory,
                                   const MeasuredChannel& measured) {
-  const int index = system.skeleton().indexOf(measured.what.of);
+  const int index = system.skeleton().indexOf(measured.what.object);
   if (index < 0) {
     throw std::invalid_argument(
-        fmt::format("measured coordinate '{}' is not free", measured.what.of));
+        fmt::format("measured coordinate '{}' is not free", measured.what.object));
   }
   const std::vector<double>& time = trajectory.time;
   Eigen::VectorXd simulated =
@@ -202,8 +201,8 @@ MeasuredError compareWithMeasured(const MusculoskeletalSystem& system, const Tra
   const MeasuredError error = errorOf(measured.times, simulated, measured.values);
   if (error.count == 0) {
     throw std::invalid_argument(
-        fmt::format("measured coordinate '{}': no value between {} s and {} s", measured.what.of,
-                    time.front(), time.back()));
+        fmt::format("measured coordinate '{}': no value between {} s and {} s",
+                    measured.what.object, time.front(), time.back()));
   }
   return error;
 }
@@ -222,8 +221,8 @@ TrialReplay replayTrial(const MusculoskeletalSystem& system, const Trial& trial,
       replay.channelErrors.push_back(
           {measured.what,
            errorOf(measured.times, observed.values(replay.motion), measured.values)});
-    } else if (system.skeleton().indexOf(measured.what.of) >= 0) {
-      replay.errors.emplace_back(measured.what.of,
+    } else if (system.skeleton().indexOf(measured.what.object) >= 0) {
+      replay.errors.emplace_back(measured.what.object,
                                  compareWithMeasured(system, replay.motion, measured));
     }
   }
@@ -232,25 +231,28 @@ TrialReplay replayTrial(const MusculoskeletalSystem& system, const Trial& trial,
   return replay;
 }
 
-std::vector<std::string> rangeRemarks(const MusculoskeletalSystem& system,
-                                      const Trajectory& trajectory) {
-  std::vector<std::string> remarks;
+std::vector<LeftRange> leftRanges(const MusculoskeletalSystem& system,
+                                  const Trajectory& trajectory) {
+  std::vector<LeftRange> left;
   for (std::size_t i = 0; i < system.skeleton().coordinates().size(); ++i) {
     const Coordinate& c = system.skeleton().coordinates()[i];
-    const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
-    const double margin = c.isRotation ? std::numbers::pi / 180 : 1e-3;
+    const ShownUnit unit = positionUnit(c.isRotation);
+    const double margin = 1 / unit.factor;
     const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
     for (Eigen::Index k = 0; k < q.size(); ++k) {
       if (q[k] >= c.rangeMin - margin && q[k] <= c.rangeMax + margin) continue;
-      remarks.push_back(fmt::format(
-          "{0} leaves its range, {1:.4g} to {2:.4g} {3}, at {4:.3g} s and reaches {5:.4g} to "
-          "{6:.4g} {3}: the model has no passive force that prevents this",
-          c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm",
-          trajectory.time[static_cast<std::size_t>(k)], q.minCoeff() * unit, q.maxCoeff() * unit));
+      const double time = trajectory.time[static_cast<std::size_t>(k)];
+      left.push_back(
+          {time, c.name,
+           fmt::format(
+               "{0} leaves its range, {1:.4g} to {2:.4g} {3}, at {4:.3g} s and reaches {5:.4g} to "
+               "{6:.4g} {3}: the model has no passive force that prevents this",
+               c.name, c.rangeMin * unit.factor, c.rangeMax * unit.factor, unit.name, time,
+               q.minCoeff() * unit.factor, q.maxCoeff() * unit.factor)});
       break;
     }
   }
-  return remarks;
+  return left;
 }
 
 std::optional<LeftRange> leftRange(const MusculoskeletalSystem& system,
@@ -267,15 +269,15 @@ std::optional<LeftRange> leftRange(const MusculoskeletalSystem& system,
   };
   for (std::size_t i = 0; i < system.skeleton().coordinates().size(); ++i) {
     const Coordinate& c = system.skeleton().coordinates()[i];
-    const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
-    const double margin = std::max(0.1 * (c.rangeMax - c.rangeMin), 1 / unit);
+    const ShownUnit unit = positionUnit(c.isRotation);
+    const double margin = std::max(0.1 * (c.rangeMax - c.rangeMin), 1 / unit.factor);
     const Eigen::VectorXd q = trajectory.q.row(static_cast<Eigen::Index>(i));
     look(c.name, q, c.rangeMin - margin, c.rangeMax + margin, [&](double time) {
       return fmt::format(
           "{0} leaves its range, {1:.4g} to {2:.4g} {3}, by more than a tenth of it "
           "at {4:.3g} s and reaches {5:.4g} to {6:.4g} {3}",
-          c.name, c.rangeMin * unit, c.rangeMax * unit, c.isRotation ? "deg" : "mm", time,
-          q.minCoeff() * unit, q.maxCoeff() * unit);
+          c.name, c.rangeMin * unit.factor, c.rangeMax * unit.factor, unit.name, time,
+          q.minCoeff() * unit.factor, q.maxCoeff() * unit.factor);
     });
   }
   for (std::size_t i = 0; i < system.numMuscles(); ++i) {

@@ -4,16 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "bio/model/units.h"
 #include "simulation/motion_weights.h"
 
 namespace bio {
 namespace {
 
-double shownFactor(bool turns) {
-  return turns ? 180 / std::numbers::pi : 1e3;
-}
 double limitOf(bool turns) {
   return turns ? largestStepEffect_deg : largestStepEffect_mm;
 }
@@ -42,7 +39,7 @@ std::optional<StepEffect> stepEffect(const MusculoskeletalSystem& system, const 
       const auto w = weightsAt(motion.time, finer.time[k]);
       const double coarse = w ? w->value(motion.q.row(i), motion.qDot.row(i)) : motion.q(i, 0);
       const double difference = std::abs(coarse - finer.q(i, static_cast<Eigen::Index>(k)));
-      const double share = difference * shownFactor(turns) / limitOf(turns);
+      const double share = difference * positionUnit(turns).factor / limitOf(turns);
       if (!(share > most)) continue;
       most = share;
       isBeyond = true;
@@ -70,8 +67,8 @@ std::string describe(const StepEffect& effect) {
   const std::string what =
       effect.failed.empty()
           ? fmt::format("{} differs by up to {:.3g} {}, at {:.3g} s", effect.coordinate,
-                        effect.difference * shownFactor(effect.turns), effect.turns ? "deg" : "mm",
-                        effect.at)
+                        effect.difference * positionUnit(effect.turns).factor,
+                        positionUnit(effect.turns).name, effect.at)
           : fmt::format("the motion does not reach the end ({})", effect.failed);
   return fmt::format(
       "with half the step ({:.4g} s) {}: the step of {:.4g} s is too long for this trial",

@@ -31,9 +31,9 @@ void requireTransferable(const TrialSet& training, const TrialSet& heldOut) {
 
 /// Numbers whose domain does not depend on the others.
 bool hasOwnDomain(const ParameterTarget& target) {
-  if (const auto* wrap = std::get_if<WrapTarget>(&target))
-    return wrap->component == 0 || wrap->component > 6;
-  if (const auto* body = std::get_if<BodyTarget>(&target)) return body->component == 0;
+  if (const auto* wrap = std::get_if<WrapTarget>(&target)) return wrap->isSize();
+  if (const auto* body = std::get_if<BodyTarget>(&target))
+    return body->quantity == BodyTarget::Quantity::mass;
   return !std::holds_alternative<PointTarget>(target) &&
          !std::holds_alternative<InitialTarget>(target);
 }

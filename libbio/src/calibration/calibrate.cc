@@ -176,16 +176,16 @@ class Calibrator {
     const auto p = static_cast<Index>(asked_.size());
     for (std::size_t i = 0; i < training_.channels().size(); ++i)
       if (training_.channels()[i].areAngles) result_.noiseFloor = measuredSd(training_, i);
-    const std::vector<VectorXd> led =
-        options_.from ? std::vector<VectorXd>() : ledFrom(valuesOf(asked_), estimate);
-    const MatrixXd guess = best(led);
+    const std::vector<VectorXd> nudged =
+        options_.from ? std::vector<VectorXd>() : nudgedFrom(valuesOf(asked_), estimate);
+    const MatrixXd guess = best(nudged);
     std::vector<ResidualNoise> first = channels_.of(guess, 0);
     for (ResidualNoise& noise : first) noise.effective = noise.sd;  // white until there is a fit
     setNoise(std::move(first));
     {
       const info::MultiStart found = info::estimateFromStarts(
           problem(result_.noise.effective), priorSds_,
-          {options_.starts, options_.seed, options_.trials.threads, 2, estimate, led});
+          {options_.starts, options_.seed, options_.trials.threads, 2, estimate, nudged});
       estimate_ = found.best;
       result_.starts = found.outcomes;
       result_.agreeingStarts = found.agreeing;
@@ -240,8 +240,9 @@ class Calibrator {
     if (!options_.from) {
       further = startsAtLikePaths(training_, least.parameters(), estimate_.parameters);
       const double sd = channels_.areOne() ? channels_.shown().front().sd : result_.noise.effective;
-      const auto led = ledStarts(training_, channels_, least.parameters(), further, sd, options);
-      further.insert(further.end(), led.begin(), led.end());
+      const auto nudged =
+          nudgedStarts(training_, channels_, least.parameters(), further, sd, options);
+      further.insert(further.end(), nudged.begin(), nudged.end());
     }
     for (const VectorXd& start : further) {
       const auto end = info::estimateIfDefined(least, start, options);
@@ -259,14 +260,15 @@ class Calibrator {
   }
 
   /// Where further starts end that are led by held models; none where nothing is to be led.
-  std::vector<VectorXd> ledFrom(const VectorXd& start, const info::EstimateOptions& estimate) {
+  std::vector<VectorXd> nudgedFrom(const VectorXd& start, const info::EstimateOptions& estimate) {
     const std::vector<ResidualNoise> shown = channels_.shown();
     channels_.weigh(shown);
     const double sd = shown.front().sd;
     const std::vector<info::Parameter> parameters = problem(sd).parameters();
     const std::vector<VectorXd> starts = startsOnBothSides(training_, parameters, start);
-    std::vector<VectorXd> led = ledStarts(training_, channels_, parameters, starts, sd, estimate);
-    return led.empty() ? starts : led;
+    std::vector<VectorXd> nudged =
+        nudgedStarts(training_, channels_, parameters, starts, sd, estimate);
+    return nudged.empty() ? starts : nudged;
   }
 
   /// The prediction nearest to the data, of the start and of those.

@@ -80,9 +80,7 @@ SteppedCalibration calibrateAtShorterSteps(const Model& model, const SystemOptio
                                            const CalibrationOptions& options, double shortest) {
   SteppedCalibration result;
   result.options = options;
-  const Integrator integrator = options.trials.simulation.integrator;
-  const bool mayShorten =
-      integrator == Integrator::variational || integrator == Integrator::variationalLeft;
+  const bool mayShorten = isVariational(options.trials.simulation.integrator);
   for (bool isFirst = true;; isFirst = false) {
     const TrialSetOptions& trials = result.options.trials;
     result.training = std::make_unique<const TrialSet>(model, system, training, trials);

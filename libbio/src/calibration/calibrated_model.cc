@@ -1,5 +1,6 @@
 #include "bio/calibration/calibrated_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -8,12 +9,11 @@ namespace {
 
 using Eigen::Index;
 
-bool isOfEmg(const Calibration& calibration) {
-  for (const CalibratedParameter& parameter : calibration.parameters)
-    if (parameter.asked.name.starts_with("emg.") ||
-        parameter.asked.name.find(".latent") != std::string::npos)
-      return true;
-  return false;
+bool changesExcitations(const Calibration& calibration) {
+  return std::any_of(calibration.parameters.begin(), calibration.parameters.end(),
+                     [](const CalibratedParameter& parameter) {
+                       return std::holds_alternative<EmgTarget>(parameter.target);
+                     });
 }
 
 /// The error of all measured angles, and of each other channel.
@@ -46,7 +46,7 @@ CalibratedModel calibratedModel(const TrialSet& training, const TrialSet* heldOu
   if (!calibration.calibrated) throw std::invalid_argument("the calibration has no estimate");
   CalibratedModel result{calibration.calibrated->model, {}};
   const Eigen::VectorXd theta = calibration.values();
-  const bool isDriven = isOfEmg(calibration);
+  const bool isDriven = changesExcitations(calibration);
   result.model.fitted = {simulation.step, {}};
   const MusculoskeletalSystem calibrated(result.model, system);
   const auto& free = calibrated.skeleton().coordinates();

@@ -86,6 +86,7 @@ class Judge {
   CalibratedParameter blank(Index i) const {
     CalibratedParameter one{};
     one.asked = parameter(i);
+    one.target = training_.targets()[static_cast<std::size_t>(i)];
     one.model = training_.parameters()[static_cast<std::size_t>(i)].start;
     one.priorSd = asked_.priorSds[i];
     one.ofTrial = isOfTrial(i);

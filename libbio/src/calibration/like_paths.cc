@@ -27,9 +27,9 @@ PostureTable measuredPostures(const TrialSet& trials) {
   std::vector<VectorXd> rows;
   const auto each = std::max<Index>(2, mostPostures / std::ssize(byTrial));
   for (const auto& measured : byTrial) {
-    const bool isAlike =
-        std::ranges::equal(measured, byTrial.front(),
-                           [](const auto* a, const auto* b) { return a->what.of == b->what.of; });
+    const bool isAlike = std::ranges::equal(
+        measured, byTrial.front(),
+        [](const auto* a, const auto* b) { return a->what.object == b->what.object; });
     if (!isAlike || measured.empty()) return {};
     const Index count = measured.front()->values.size();
     for (Index k = 0; k < std::min(each, count); ++k) {
@@ -41,7 +41,8 @@ PostureTable measuredPostures(const TrialSet& trials) {
       rows.push_back(std::move(row));
     }
   }
-  for (const MeasuredSeries* series : byTrial.front()) table.coordinates.push_back(series->what.of);
+  for (const MeasuredSeries* series : byTrial.front())
+    table.coordinates.push_back(series->what.object);
   table.values.resize(std::ssize(rows), std::ssize(table.coordinates));
   for (std::size_t k = 0; k < rows.size(); ++k) table.values.row(static_cast<Index>(k)) = rows[k];
   return table;

@@ -23,17 +23,17 @@ constexpr int mostSides = 6;
 
 }  // namespace
 
-std::vector<VectorXd> ledStarts(const TrialSet& trials, const ChannelNoise& channels,
-                                const std::vector<info::Parameter>& parameters,
-                                const std::vector<VectorXd>& starts, double sd,
-                                const info::EstimateOptions& estimate) {
+std::vector<VectorXd> nudgedStarts(const TrialSet& trials, const ChannelNoise& channels,
+                                   const std::vector<info::Parameter>& parameters,
+                                   const std::vector<VectorXd>& starts, double sd,
+                                   const info::EstimateOptions& estimate) {
   const auto& series = trials.series();
   const bool canHold =
       std::any_of(series.begin(), series.end(), [](const MeasuredSeries& measured) {
         return measured.what.isCoordinate() && measured.times.size() >= 4;
       });
   if (!canHold) return {};
-  std::vector<VectorXd> led = starts;
+  std::vector<VectorXd> nudged = starts;
   info::EstimateOptions options = estimate;
   options.maxIterations = stageIterations;
   const MatrixXd measured = channels.weighted(trials.measured());
@@ -43,13 +43,13 @@ std::vector<VectorXd> ledStarts(const TrialSet& trials, const ChannelNoise& chan
     const double sigma = stage.spread * sd;
     const info::OutputCovariance covariance(MatrixXd::Constant(1, 1, sigma * sigma));
     const info::LeastSquares problem(predictor, {measured, covariance, {}, {}}, parameters);
-    std::erase_if(led, [&](VectorXd& theta) {
+    std::erase_if(nudged, [&](VectorXd& theta) {
       const auto end = info::estimateIfDefined(problem, theta, options);
       if (end) theta = end->parameters;
       return !end;
     });
   }
-  return led;
+  return nudged;
 }
 
 std::vector<VectorXd> startsOnBothSides(const TrialSet& trials,

@@ -16,10 +16,10 @@ namespace bio {
 /// @param parameters  with bounds and priors
 /// @param starts      θ each
 /// @param sd          of the weighted measurements > 0
-std::vector<Eigen::VectorXd> ledStarts(const TrialSet& trials, const ChannelNoise& channels,
-                                       const std::vector<info::Parameter>& parameters,
-                                       const std::vector<Eigen::VectorXd>& starts, double sd,
-                                       const info::EstimateOptions& estimate);
+std::vector<Eigen::VectorXd> nudgedStarts(const TrialSet& trials, const ChannelNoise& channels,
+                                          const std::vector<info::Parameter>& parameters,
+                                          const std::vector<Eigen::VectorXd>& starts, double sd,
+                                          const info::EstimateOptions& estimate);
 
 /// The start, and for every parameter that shapes a path – a radius of a wrap object, a path point
 /// – one on either side of it: lengths depend on these in ways that have more than one valley.

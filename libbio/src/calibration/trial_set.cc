@@ -22,8 +22,7 @@ bool isStart(const ModelParameter& parameter) {
 }
 
 bool isLatent(const ModelParameter& parameter) {
-  const auto* emg = std::get_if<EmgTarget>(&parameter.targets.front());
-  return emg && emg->what == EmgTarget::What::latent;
+  return isKnot(parameter.targets.front());
 }
 
 EmgMapping latentMapping(const Trial& trial, const MusculoskeletalSystem& system) {
@@ -111,7 +110,7 @@ TrialSet::TrialSet(const Model& model, const SystemOptions& system, std::vector<
 
 std::size_t TrialSet::channelOf(const Observable& what, const Model& model) {
   const bool isAngle =
-      what.kind == Observable::Kind::coordinate && findCoordinate(model, what.of).isRotation;
+      what.kind == Observable::Kind::coordinate && findCoordinate(model, what.object).isRotation;
   MeasuredGroup group{isAngle ? "angles" : nameOf(what), unitOf(what, model), isAngle};
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     if (channels_[i].name == group.name) return i;
@@ -126,7 +125,7 @@ void TrialSet::collectSeries(const Model& model) {
     for (const MeasuredChannel& measured : trials_[i].measured) {
       if (measured.times.size() == 0) continue;
       if (measured.what.isCoordinate()) {
-        const int index = system_->skeleton().indexOf(measured.what.of);
+        const int index = system_->skeleton().indexOf(measured.what.object);
         if (index < 0 || system_->isPrescribed(index)) continue;
       }
       series_.push_back({i,
@@ -170,6 +169,8 @@ void TrialSet::collectParameters(const TrialSetOptions& options) {
     }
   }
   parameters_ = catalogue.asEstimated(selection_, false);
+  for (const std::size_t i : selection_)
+    targets_.push_back(catalogue.parameters()[i].targets.front());
   collectOwn(options);
   priorSds_.resize(static_cast<Index>(parameters_.size()));
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
@@ -188,6 +189,7 @@ void TrialSet::collectOwn(const TrialSetOptions& options) {
       if ((options.ownStart && isStart(all[k])) || isLatent(all[k])) own_[i].push_back(k);
     }
     addLatent(i, parameters_.size());
+    for (const std::size_t k : own_[i]) targets_.push_back(all[k].targets.front());
     for (info::Parameter parameter : catalogues_[i]->asEstimated(own_[i], true)) {
       if (trials_.size() > 1) parameter.name = fmt::format("trial{}.{}", i + 1, parameter.name);
       parameters_.push_back(std::move(parameter));
@@ -198,21 +200,21 @@ void TrialSet::collectOwn(const TrialSetOptions& options) {
 void TrialSet::addLatent(std::size_t trial, std::size_t first) {
   const auto& all = catalogues_[trial]->parameters();
   const EmgMapping mapping = catalogues_[trial]->nominal().mapping;
-  const Trial& of = trials_[trial];
+  const Trial& recorded = trials_[trial];
   for (std::size_t k = 0; k < own_[trial].size(); ++k) {
     const ModelParameter& parameter = all[own_[trial][k]];
     if (!isLatent(parameter)) continue;
     const EmgTarget& target = std::get<EmgTarget>(parameter.targets.front());
     if (target.knot != 0) continue;
     const auto declared =
-        std::find_if(of.latent.begin(), of.latent.end(),
+        std::find_if(recorded.latent.begin(), recorded.latent.end(),
                      [&](const LatentDeclaration& d) { return d.muscle == target.muscle; });
-    const auto column = std::find(of.muscles.begin(), of.muscles.end(), target.muscle);
+    const auto column = std::find(recorded.muscles.begin(), recorded.muscles.end(), target.muscle);
     const std::vector<double>& knots = mapping.latent.at(target.muscle).knots;
     Eigen::VectorXd atKnots(static_cast<Index>(knots.size()));
     for (Index j = 0; j < atKnots.size(); ++j) {
-      atKnots[j] =
-          excitationAt(of, column - of.muscles.begin(), knots[static_cast<std::size_t>(j)]);
+      atKnots[j] = excitationAt(recorded, column - recorded.muscles.begin(),
+                                knots[static_cast<std::size_t>(j)]);
     }
     latent_.push_back({trial, *declared, knots, std::move(atKnots), first + k});
   }
@@ -293,7 +295,7 @@ std::vector<TrialPredictor> TrialSet::nudged(double frequency) const {
   std::vector<TrialPredictor> held = experiments_;
   for (const MeasuredSeries& series : series_) {
     if (series.what.kind != Observable::Kind::coordinate || series.times.size() < 4) continue;
-    held[series.trial].hold(nudgeTo(*system_, system_->skeleton().indexOf(series.what.of),
+    held[series.trial].hold(nudgeTo(*system_, system_->skeleton().indexOf(series.what.object),
                                     series.times, series.values, frequency));
   }
   return held;

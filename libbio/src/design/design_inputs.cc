@@ -71,7 +71,7 @@ std::vector<info::ProfileLimits> profileLimits(const DesignLimits& limits,
   require(limits.leastExcitation >= 0 && limits.largestExcitation <= 1,
           fmt::format("excitations {} to {}, must be within 0 to 1", limits.leastExcitation,
                       limits.largestExcitation));
-  require(limits.surprise >= 0, fmt::format("surprise = {}, must be ≥ 0", limits.surprise));
+  require(limits.robustness >= 0, fmt::format("surprise = {}, must be ≥ 0", limits.robustness));
   std::vector<info::ProfileLimits> inputs;
   for (const CoordinateLimits& torque : torques) {
     inputs.push_back({-torque.torque, torque.torque, limits.torqueRate, 0.0});

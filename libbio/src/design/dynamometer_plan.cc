@@ -36,7 +36,7 @@ std::vector<ObservedSeries> measuredSeries(std::initializer_list<Observable::Kin
   std::size_t i = 0;
   for (const Observable::Kind kind : kinds) {
     series[i].what.kind = kind;
-    series[i].what.of = coordinate;
+    series[i].what.object = coordinate;
     series[i++].times = times;
   }
   return series;
@@ -213,11 +213,11 @@ class DynamometerPlanner {
     Index k = 0;
     for (; k < rows; ++k) {
       const double q = at.outputs[k], speed = at.outputs[rows + k];
-      const double surprise =
-          question_.surprise *
+      const double allowance =
+          question_.robustness *
           at.gamma.row(k).head(asked).cwiseProduct(sd_.head(asked).transpose()).norm();
-      const bool isFine = q - surprise >= coordinate_.rangeMin &&
-                          q + surprise <= coordinate_.rangeMax &&
+      const bool isFine = q - allowance >= coordinate_.rangeMin &&
+                          q + allowance <= coordinate_.rangeMax &&
                           std::abs(speed) <= question_.fastest;
       if (!isFine) break;
     }
@@ -282,7 +282,7 @@ void checkQuestion(const DynamometerQuestion& question) {
   require(question.noise > 0 && question.angleNoise > 0 && question.rate > 0 && question.count > 0,
           "noise, rate and count must be > 0");
   require(question.rate <= 1e5, "rate must be at most 1e5 samples per second");
-  require(question.surprise >= 0 && question.fastest > 0,
+  require(question.robustness >= 0 && question.fastest > 0,
           "surprise must be at least 0 and the largest speed > 0");
   const auto& at = question.positions;
   require(

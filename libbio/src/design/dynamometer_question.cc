@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
+
+#include "bio/model/units.h"
 
 namespace bio {
 namespace {
@@ -15,7 +16,6 @@ namespace course = dynamometer;
 
 constexpr Kind everyKind[] = {Kind::isometric, Kind::isokinetic, Kind::passive, Kind::release,
                               Kind::isotonic};
-constexpr double degreesPerRadian = 180 / std::numbers::pi;
 
 /// Lists of a question for one coordinate, filled in and checked.
 class DynamometerDefaults {
@@ -42,7 +42,7 @@ class DynamometerDefaults {
  private:
   /// A value in degrees as [rad], or in millimetres as [m].
   double small(double value) const {
-    return coordinate_.isRotation ? value * (std::numbers::pi / 180) : value / 1000;
+    return coordinate_.isRotation ? value * radiansPerDegree : value / 1000;
   }
 
   /// "1.047 rad (60 deg)"

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "bio/design/experiment_design.h"
+#include "bio/model/units.h"
 
 namespace bio {
 namespace {
@@ -140,7 +141,7 @@ std::string DynamometerTrials::coordinateColumn() const {
 }
 
 double DynamometerTrials::unit() const {
-  return coordinate_.isRotation ? 180 / std::numbers::pi : 1;
+  return coordinate_.isRotation ? degreesPerRadian : 1;
 }
 
 Table DynamometerTrials::trialOf(const DynamometerExperiment& experiment) const {

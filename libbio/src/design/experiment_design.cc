@@ -141,19 +141,19 @@ info::InformationCost ExperimentDesign::cost(const MatrixXd& information,
   }
   MatrixXd own = Z.transpose() * information * Z;
   own = (own + own.transpose()) / 2;
-  const info::Criterion of = info::criterion(question_.criterion, own, repeatedTolerance);
+  const info::Criterion criterion = info::criterion(question_.criterion, own, repeatedTolerance);
   info::InformationCost result;
   switch (question_.criterion) {
     case info::Optimality::a:
-      result = {std::log(of.value), of.dvalue_dI / of.value};
+      result = {std::log(criterion.value), criterion.dvalue_dI / criterion.value};
       break;
     case info::Optimality::d:
-      result = {-of.value, -of.dvalue_dI};
+      result = {-criterion.value, -criterion.dvalue_dI};
       break;
     default:
-      if (!(of.value > 0))
+      if (!(criterion.value > 0))
         throw std::domain_error("the experiment has no information about the parameters");
-      result = {-std::log(of.value), -of.dvalue_dI / of.value};
+      result = {-std::log(criterion.value), -criterion.dvalue_dI / criterion.value};
   }
   result.dvalue_dI = (Z * result.dvalue_dI * Z.transpose()).eval();
   return result;
@@ -161,14 +161,14 @@ info::InformationCost ExperimentDesign::cost(const MatrixXd& information,
 
 /// √Σ(dy/dθ_i·deviation_i)² over the parameters asked for, at every row.
 template <class Rows>
-VectorXd ExperimentDesign::surpriseOf(const Rows& slopes) const {
+VectorXd ExperimentDesign::allowanceOf(const Rows& slopes) const {
   const auto p = static_cast<Index>(question_.parameters.size());
-  const VectorXd off = inputs_.limits().surprise * scale_.cwiseMin(question_.priorSd).head(p);
+  const VectorXd off = inputs_.limits().robustness * scale_.cwiseMin(question_.priorSd).head(p);
   return (slopes.leftCols(p) * off.asDiagonal()).rowwise().norm();
 }
 
-MatrixXd ExperimentDesign::surpriseAt(const DesignedExperiment& e) const {
-  return byObservable(surpriseOf(e.gamma), question_.observed.size());
+MatrixXd ExperimentDesign::allowanceAt(const DesignedExperiment& e) const {
+  return byObservable(allowanceOf(e.gamma), question_.observed.size());
 }
 
 VectorXd ExperimentDesign::boundOverTime(const DesignedExperiment& e) const {
@@ -195,11 +195,11 @@ double ExperimentDesign::penalty(const SensitivityTrajectory& s, double price) c
   for (const CoordinateLimits& limits : inputs_.limits().coordinates) {
     const int c = system_->skeleton().indexOf(limits.coordinate);
     const double margin = 0.02 * (limits.upper - limits.lower);
-    const VectorXd surprise = surpriseOf(s.q[static_cast<std::size_t>(c)]);
-    for (Index k = 0; k < surprise.size(); ++k) {
+    const VectorXd allowance = allowanceOf(s.q[static_cast<std::size_t>(c)]);
+    for (Index k = 0; k < allowance.size(); ++k) {
       const double q = s.motion.q(c, k);
-      const double below = std::max(0.0, limits.lower + margin - q + surprise[k]) / margin;
-      const double above = std::max(0.0, q + surprise[k] - limits.upper + margin) / margin;
+      const double below = std::max(0.0, limits.lower + margin - q + allowance[k]) / margin;
+      const double above = std::max(0.0, q + allowance[k] - limits.upper + margin) / margin;
       const double fast = std::max(0.0, std::abs(s.motion.qDot(c, k)) / limits.speed - 0.97) / 0.03;
       sum += below * below + above * above + fast * fast;
     }
@@ -212,10 +212,10 @@ std::vector<MotionRange> ExperimentDesign::rangesOf(const SensitivityTrajectory&
   for (const CoordinateLimits& limits : inputs_.limits().coordinates) {
     const int c = system_->skeleton().indexOf(limits.coordinate);
     const VectorXd q = s.motion.q.row(c).transpose();
-    const VectorXd surprise = surpriseOf(s.q[static_cast<std::size_t>(c)]);
+    const VectorXd allowance = allowanceOf(s.q[static_cast<std::size_t>(c)]);
     ranges.push_back({{q.minCoeff(), q.maxCoeff(), s.motion.qDot.row(c).cwiseAbs().maxCoeff()},
-                      (q - surprise).minCoeff(),
-                      (q + surprise).maxCoeff()});
+                      (q - allowance).minCoeff(),
+                      (q + allowance).maxCoeff()});
   }
   return ranges;
 }

@@ -70,7 +70,7 @@ std::vector<std::string> inQuestion(const MusculoskeletalSystem& system,
     }
   }
   for (const ChannelCandidate& candidate : observed) {
-    if (candidate.what.kind == Observable::Kind::moment) held.push_back(candidate.what.of);
+    if (candidate.what.kind == Observable::Kind::moment) held.push_back(candidate.what.object);
   }
   std::vector<std::string> names = coordinatesInQuestion(free, held, {});
   require(!names.empty(), "no coordinate is free, and no moment is observed: must have either");

@@ -11,6 +11,7 @@
 
 #include "bio/analysis/inverse_dynamics.h"
 #include "bio/analysis/replay.h"
+#include "bio/model/units.h"
 #include "bio/observation/smoothed_motion.h"
 #include "info/dynamics/linear_table.h"
 
@@ -251,10 +252,9 @@ class Remedies {
     double largest = 0;
     for (const Recorded& trial : trials_)
       largest = std::max(largest, trial.q.row(row).cwiseAbs().maxCoeff());
-    constexpr double degrees = 180 / std::numbers::pi;
-    if (degrees * largest < 2 * std::numbers::pi)
+    if (degreesPerRadian * largest < 2 * std::numbers::pi)
       considerAll(fmt::format("{} is in radians, not in degrees", name),
-                  [&](Recorded& trial) { trial.q.row(row) *= degrees; });
+                  [&](Recorded& trial) { trial.q.row(row) *= degreesPerRadian; });
   }
 
   /// The excitations, or the motion, of all trials are late.

@@ -54,7 +54,7 @@ EffectSize effectSize(const MusculoskeletalProblem& data, std::size_t candidate,
       const MusculoskeletalSystem system = data.systemAt(trial, values);
       size.motionRms = sensorError(
           with, {system, what, model.sensorAt(alone, sensor), with.time, with.time.front()},
-          system.skeleton().indexOf(what.of));
+          system.skeleton().indexOf(what.object));
       return size;
     }
     const Trajectory without = data.motion(trial, absent);

@@ -110,9 +110,9 @@ std::size_t EncompassingModel::addLaw(ExpressionBasedCoordinateForce law) {
   laws_.push_back({Law::List::expression, encompassing_.expressionForces.size() - 1, {}});
   return laws_.back().index;
 }
-std::size_t EncompassingModel::addMuscle(std::size_t muscle, std::vector<std::string> proxies) {
+std::size_t EncompassingModel::addMuscle(std::size_t muscle, std::vector<std::string> synergists) {
   SchutteParameters& parameters = *encompassing_.muscles.at(muscle).schutte;
-  proxies_[base_.muscles[muscle].name] = std::move(proxies);
+  synergists_[base_.muscles[muscle].name] = std::move(synergists);
   laws_.push_back({Law::List::muscle, muscle, {}});
   // as good as none: a force beside which any other stays as it is
   parameters.maxIsometricForce *= 1e-30;
@@ -278,39 +278,39 @@ ParameterDirection EncompassingModel::direction(const VectorXd& values,
   return direction;
 }
 
-SensorLaw EncompassingModel::sensorAt(const VectorXd& values, std::size_t of) const {
-  SensorLaw sensor;
+SensorLaw EncompassingModel::sensorAt(const VectorXd& values, std::size_t sensor) const {
+  SensorLaw law;
   for (std::size_t i = 0; i < meanings_.size(); ++i) {
-    if (meanings_[i].sensor != of) continue;
+    if (meanings_[i].sensor != sensor) continue;
     const double value = values[static_cast<Index>(i)];
-    if (meanings_[i].kind == Meaning::Kind::bias) sensor.bias += value;
-    if (meanings_[i].kind == Meaning::Kind::gain) sensor.gain += value;
-    if (meanings_[i].kind == Meaning::Kind::clock) sensor.clock += value;
-    if (meanings_[i].kind == Meaning::Kind::rate) sensor.rate += value;
-    if (meanings_[i].kind == Meaning::Kind::lag) sensor.lag += value;
-    if (meanings_[i].kind == Meaning::Kind::drift) sensor.drift += value;
+    if (meanings_[i].kind == Meaning::Kind::bias) law.bias += value;
+    if (meanings_[i].kind == Meaning::Kind::gain) law.gain += value;
+    if (meanings_[i].kind == Meaning::Kind::clock) law.clock += value;
+    if (meanings_[i].kind == Meaning::Kind::rate) law.rate += value;
+    if (meanings_[i].kind == Meaning::Kind::lag) law.lag += value;
+    if (meanings_[i].kind == Meaning::Kind::drift) law.drift += value;
   }
-  return sensor;
+  return law;
 }
 
-Trial withProxies(Trial trial, const EncompassingModel& encompassing) {
-  for (const auto& [muscle, proxies] : encompassing.proxies()) {
+Trial withSynergists(Trial trial, const EncompassingModel& encompassing) {
+  for (const auto& [muscle, synergists] : encompassing.synergists()) {
     const auto has = [&](const std::string& name) {
       return std::find(trial.muscles.begin(), trial.muscles.end(), name);
     };
     if (has(muscle) != trial.muscles.end()) continue;
     VectorXd mean = VectorXd::Zero(trial.times.size());
-    for (const std::string& proxy : proxies) {
-      const auto at = has(proxy);
+    for (const std::string& synergist : synergists) {
+      const auto at = has(synergist);
       if (at == trial.muscles.end()) {
         throw std::invalid_argument(
-            fmt::format("{}: no excitation of muscle '{}'", trial.file, proxy));
+            fmt::format("{}: no excitation of muscle '{}'", trial.file, synergist));
       }
       mean += trial.excitations.col(at - trial.muscles.begin());
     }
     trial.muscles.push_back(muscle);
     trial.excitations.conservativeResize(Eigen::NoChange, trial.excitations.cols() + 1);
-    trial.excitations.rightCols<1>() = mean / static_cast<double>(proxies.size());
+    trial.excitations.rightCols<1>() = mean / static_cast<double>(synergists.size());
   }
   return trial;
 }

@@ -119,8 +119,7 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
   positive(options_.latentFloor, "floor of the latent force's scale");
   positive(options_.startSd, "standard deviation of the start");
   positive(options_.speedSd, "standard deviation of the start's speed");
-  const Integrator integrator = options_.simulation.integrator;
-  if (integrator != Integrator::variational && integrator != Integrator::variationalLeft) {
+  if (!isVariational(options_.simulation.integrator)) {
     throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
   double lastStart = -HUGE_VAL, firstEnd = HUGE_VAL;
@@ -137,7 +136,7 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
   encompassing_.forget(unsaturated(encompassing_, withFlatTops(trials)));
   encompassing_.forget(withoutElectrode(encompassing_, neverRecorded(trials)));
   quantities_ = encompassing_.quantities();
-  for (Trial& trial : trials) addTrial(withProxies(std::move(trial), encompassing_));
+  for (Trial& trial : trials) addTrial(withSynergists(std::move(trial), encompassing_));
   latentLag_ = activationLag();
   separateWhatTrialsTellApart();
 }

@@ -10,54 +10,54 @@ using Eigen::VectorXd;
 /// outlive it.
 class MusculoskeletalProblem::Nudged final : public info::discover::DiscoveryProblem {
  public:
-  Nudged(const MusculoskeletalProblem& of, double frequency) : of_(of) {
-    for (const OfTrial& trial : of.trials_) {
+  Nudged(const MusculoskeletalProblem& problem, double frequency) : problem_(problem) {
+    for (const OfTrial& trial : problem.trials_) {
       std::vector<Nudge>& nudges = nudges_.emplace_back();
       for (const Series& series : trial.series) {
-        const Observable& what = of.encompassing_.sensors()[series.sensor];
+        const Observable& what = problem.encompassing_.sensors()[series.sensor];
         if (!what.isCoordinate()) continue;
-        nudges.push_back(nudgeTo(of.encompassing_.system(),
-                                 of.encompassing_.system().skeleton().indexOf(what.of),
+        nudges.push_back(nudgeTo(problem.encompassing_.system(),
+                                 problem.encompassing_.system().skeleton().indexOf(what.object),
                                  series.times, trial.measured(series.samples), frequency));
       }
     }
   }
-  const std::vector<Quantity>& quantities() const override { return of_.quantities(); }
-  const std::vector<std::size_t>& nuisances() const override { return of_.nuisances(); }
-  const std::vector<Candidate>& candidates() const override { return of_.candidates(); }
-  int numTrials() const override { return of_.numTrials(); }
-  std::string trialName(int trial) const override { return of_.trialName(trial); }
-  const std::vector<double>& times(int trial) const override { return of_.times(trial); }
+  const std::vector<Quantity>& quantities() const override { return problem_.quantities(); }
+  const std::vector<std::size_t>& nuisances() const override { return problem_.nuisances(); }
+  const std::vector<Candidate>& candidates() const override { return problem_.candidates(); }
+  int numTrials() const override { return problem_.numTrials(); }
+  std::string trialName(int trial) const override { return problem_.trialName(trial); }
+  const std::vector<double>& times(int trial) const override { return problem_.times(trial); }
   const std::vector<int>& outputOfSample(int trial) const override {
-    return of_.outputOfSample(trial);
+    return problem_.outputOfSample(trial);
   }
-  const VectorXd& measured(int trial) const override { return of_.measured(trial); }
-  const std::vector<info::discover::Axis>& axes() const override { return of_.axes(); }
+  const VectorXd& measured(int trial) const override { return problem_.measured(trial); }
+  const std::vector<info::discover::Axis>& axes() const override { return problem_.axes(); }
   const std::vector<info::discover::Node>& nodes(int trial) const override {
-    return of_.nodes(trial);
+    return problem_.nodes(trial);
   }
-  double latentLag() const override { return of_.latentLag(); }
+  double latentLag() const override { return problem_.latentLag(); }
   Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override {
-    return of_.predictWith(&of(trial), trial, values, latent, wanted, latentToo);
+    return problem_.predictWith(&of(trial), trial, values, latent, wanted, latentToo);
   }
   std::unique_ptr<Simulation> simulated(int trial, const VectorXd& values, const VectorXd& latent,
                                         const std::vector<std::size_t>& wanted,
                                         bool latentToo) const override {
-    return of_.simulatedWith(&of(trial), trial, values, latent, wanted, latentToo);
+    return problem_.simulatedWith(&of(trial), trial, values, latent, wanted, latentToo);
   }
   VectorXd outputs(int trial, const VectorXd& values, const VectorXd& latent) const override {
-    return of_.outputsOf(of_.of(trial), values, latent, 1, &of(trial));
+    return problem_.outputsOf(problem_.of(trial), values, latent, 1, &of(trial));
   }
-  MatrixXd inputs(int trial) const override { return of_.inputs(trial); }
-  std::vector<std::string> inputNames() const override { return of_.inputNames(); }
+  MatrixXd inputs(int trial) const override { return problem_.inputs(trial); }
+  std::vector<std::string> inputNames() const override { return problem_.inputNames(); }
 
  private:
   const std::vector<Nudge>& of(int trial) const {
     return nudges_.at(static_cast<std::size_t>(trial));
   }
 
-  const MusculoskeletalProblem& of_;
+  const MusculoskeletalProblem& problem_;
   std::vector<std::vector<Nudge>> nudges_;
 };
 

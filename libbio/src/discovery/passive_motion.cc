@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "bio/analysis/inverse_dynamics.h"
 #include "bio/analysis/replay.h"
 #include "bio/discovery/end_of_limb.h"
 #include "bio/discovery/with_experimental_conditions.h"
+#include "bio/model/units.h"
 
 namespace bio::discover {
 
@@ -82,7 +82,7 @@ std::string sentenceOf(const Trial& moved, const EncompassingModel& model, doubl
                        double high) {
   const Coordinate& coordinate = model.coordinate();
   const bool turns = coordinate.isRotation;
-  const double unit = turns ? std::numbers::pi / 180 : 1;
+  const double unit = turns ? radiansPerDegree : 1;
   std::string changed, header;
   if (moved.conditions.massInHand != 0)
     changed = fmt::format(", with {} kg {}", moved.conditions.massInHand, placeOfMass(model));
@@ -106,19 +106,15 @@ std::vector<PlannedExperiment> passiveMotions(const Trial& trial, const Encompas
   const Coordinate& coordinate = model.coordinate();
   const double span = coordinate.rangeMax - coordinate.rangeMin;
   if (!std::isfinite(span) || !(span > 0)) return planned;
-  const auto can = [&](const char* change) {
-    return std::any_of(model.quantities().begin(), model.quantities().end(),
-                       [&](const auto& quantity) { return quantity.name == change; });
-  };
   for (const double turn : {0.0, -45.0}) {
-    if (turn != 0 && !can("known.turn")) continue;
+    if (turn != 0 && !model.conditions().armTurn) continue;
     for (const double mass : {0.0, 1.0}) {
-      if (mass != 0 && !can("known.mass")) continue;
+      if (mass != 0 && !model.conditions().massInHand) continue;
       const double low = coordinate.rangeMin + 0.1 * span,
                    high = coordinate.rangeMin + (turn == 0 ? 0.65 : 0.85) * span;
       Trial changed = trial;
       changed.conditions.massInHand += mass;
-      changed.conditions.armTurn += turn * std::numbers::pi / 180;
+      changed.conditions.armTurn += turn * radiansPerDegree;
       if (auto moved = movedPassively(std::move(changed), model, low, high))
         planned.push_back({sentenceOf(*moved, model, low, high), std::move(*moved)});
     }

@@ -91,20 +91,21 @@ MatrixXd MusculoskeletalProblem::latentScale(const OfTrial& trial,
 /// A trial's simulation and, once asked for, its derivatives.
 class MusculoskeletalProblem::Run final : public Simulation {
  public:
-  Run(const MusculoskeletalProblem& of, const std::vector<Nudge>* nudges, int trial,
+  Run(const MusculoskeletalProblem& problem, const std::vector<Nudge>* nudges, int trial,
       const VectorXd& values, const VectorXd& latent, const std::vector<std::size_t>& wanted,
       bool latentToo)
-      : of_(of),
-        one_(of.of(trial)),
+      : problem_(problem),
+        one_(problem.of(trial)),
         wanted_(wanted),
         latentToo_(latentToo),
-        setting_(of.settingAt(one_, values, wanted)),
-        timedNodes_(of.timedDirections(one_, values, wanted)),
-        columns_(of.columnsOf(one_, values, wanted)),
+        setting_(problem.settingAt(one_, values, wanted)),
+        timedNodes_(problem.timedDirections(one_, values, wanted)),
+        columns_(problem.columnsOf(one_, values, wanted)),
         outputs_(VectorXd::Constant(static_cast<Index>(one_.times.size()), nan)),
         speeds_(outputs_) {
     try {
-      options_.simulation = of.simulationOf(one_, values, of.withTimedForces(one_, values, latent));
+      options_.simulation =
+          problem.simulationOf(one_, values, problem.withTimedForces(one_, values, latent));
       if (nudges) {
         for (const Nudge& nudge : *nudges)
           apply(nudge, setting_.model, options_.simulation.externalForce);
@@ -112,16 +113,16 @@ class MusculoskeletalProblem::Run final : public Simulation {
       // forces that change in time follow those at the nodes
       if (latentToo || timedNodes_.size() > 0) {
         options_.externalNodes.times = one_.nodeTimes;
-        for (const MovingCoordinate& at : of.encompassing_.coordinates())
+        for (const MovingCoordinate& at : problem.encompassing_.coordinates())
           options_.externalNodes.coordinates.push_back(at.index);
       }
-      system_.emplace(of.encompassing_.systemOf(setting_));
-      sensors_ = of.sensedBy(*system_, one_, values);
+      system_.emplace(problem.encompassing_.systemOf(setting_));
+      sensors_ = problem.sensedBy(*system_, one_, values);
       for (const SensedMotion& sensor : sensors_) {
         options_.reactions = options_.reactions || sensor.needsReactions();
         options_.muscles = options_.muscles || sensor.needsMuscles();
       }
-      excitation_ = of.excitationFor(one_, *system_);
+      excitation_ = problem.excitationFor(one_, *system_);
       run_.emplace(*system_, setting_, excitation_, options_);
     } catch (const std::exception&) {
       return;  // outside the model's domain
@@ -139,11 +140,11 @@ class MusculoskeletalProblem::Run final : public Simulation {
     const auto K = static_cast<Index>(one_.times.size());
     const auto numNodes = static_cast<Index>(latentToo_ ? one_.nodes.size() : 0);
     const VectorXd nowhere = VectorXd::Constant(numNodes, nan);
-    const auto axes = static_cast<Index>(of_.axes_.size());
+    const auto axes = static_cast<Index>(problem_.axes_.size());
     Prediction result{outputs_,
                       MatrixXd::Constant(K, static_cast<Index>(wanted_.size()), nan),
                       MatrixXd::Constant(latentToo_ ? K : 0, numNodes, nan),
-                      MatrixXd::Constant(numNodes, axes, of_.options_.latentFloor),
+                      MatrixXd::Constant(numNodes, axes, problem_.options_.latentFloor),
                       speeds_,
                       {nowhere, nowhere},
                       MatrixXd::Constant(numNodes, numNodes, nan)};
@@ -151,7 +152,7 @@ class MusculoskeletalProblem::Run final : public Simulation {
     SensitivityTrajectory s;
     try {
       s = run_->sensitivities(columns_.directions);
-      if (latentToo_) result.scale = of_.latentScale(one_, *system_, s.motion);
+      if (latentToo_) result.scale = problem_.latentScale(one_, *system_, s.motion);
     } catch (const std::exception&) {
       result.outputs.setConstant(nan);
       result.speeds.setConstant(nan);
@@ -172,7 +173,8 @@ class MusculoskeletalProblem::Run final : public Simulation {
     const auto numNodes = static_cast<Index>(one_.nodes.size());
     for (Index k = 0; k < numNodes; ++k) {
       const info::discover::Node& node = one_.nodes[static_cast<std::size_t>(k)];
-      const auto c = static_cast<std::size_t>(of_.encompassing_.coordinates()[node.axis].index);
+      const auto c =
+          static_cast<std::size_t>(problem_.encompassing_.coordinates()[node.axis].index);
       const auto w = lookAt(motion.time, std::min(node.time, motion.time.back()));
       if (!w) continue;
       const auto q = motion.q.row(static_cast<Index>(c)),
@@ -215,7 +217,7 @@ class MusculoskeletalProblem::Run final : public Simulation {
       for (Index i = 0; i < column.size(); ++i)
         column[i] = nodes.row(i).dot(timedNodes_.col(static_cast<Index>(j)));
     }
-    if (!kind || of_.encompassing_.sensorOf(wanted_[j]) != own) return column;
+    if (!kind || problem_.encompassing_.sensorOf(wanted_[j]) != own) return column;
     switch (*kind) {
       case Kind::bias:
         return (1 + column.array()).matrix();
@@ -242,11 +244,11 @@ class MusculoskeletalProblem::Run final : public Simulation {
   double startAngle(int sensor) const {
     for (const Start& start : one_.starts)
       if (start.sensor == sensor)
-        return setting_.start.q[of_.encompassing_.coordinates()[start.coordinate].index];
+        return setting_.start.q[problem_.encompassing_.coordinates()[start.coordinate].index];
     throw std::logic_error("a start that no sensor shows");
   }
 
-  const MusculoskeletalProblem& of_;
+  const MusculoskeletalProblem& problem_;
   const OfTrial& one_;
   std::vector<std::size_t> wanted_;
   bool latentToo_;

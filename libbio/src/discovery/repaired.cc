@@ -212,13 +212,13 @@ void takeReplays(Verdict& verdict, const Repaired& repaired) {
   // what a gap compares is what the sensor shows
   const std::vector<SensorLaw>& sensors = repaired.added.sensors;
   const double shown = sensors.size() == 1 ? 1 + sensors.front().gain : 1;
-  const auto take = [&](info::discover::ExcessError& gap, bool heldOut) {
-    gap.nominal = pooledRms(repaired.trials, &RepairedTrial::nominal, heldOut);
-    gap.after = shown * pooledRms(repaired.trials, &RepairedTrial::after, heldOut);
-    explainExcess(gap);
-    gap.after /= shown;
+  const auto take = [&](info::discover::ExcessError& excess, bool heldOut) {
+    excess.nominal = pooledRms(repaired.trials, &RepairedTrial::nominal, heldOut);
+    excess.after = shown * pooledRms(repaired.trials, &RepairedTrial::after, heldOut);
+    explainExcess(excess);
+    excess.after /= shown;
   };
-  take(verdict.gap, false);
+  take(verdict.excess, false);
   if (verdict.heldOut) take(*verdict.heldOut, true);
 }
 
@@ -226,24 +226,20 @@ std::vector<FittedNumber> fittedNumbers(const MusculoskeletalProblem& data,
                                         const Verdict& verdict) {
   std::vector<FittedNumber> numbers = info::discover::fittedNumbers(data, verdict);
   const EncompassingModel& encompassing = data.encompassing();
-  const std::string ending = " factor";
   for (FittedNumber& number : numbers) {
-    if (number.quantity >= encompassing.quantities().size() || !number.name.ends_with(ending))
-      continue;
-    const std::string stem = number.name.substr(0, number.name.size() - ending.size());
-    const auto& known = encompassing.parameters().parameters();
-    const auto at = std::find_if(known.begin(), known.end(),
-                                 [&](const ModelParameter& p) { return p.name == stem; });
-    if (at == known.end()) continue;
+    if (number.quantity >= encompassing.quantities().size()) continue;
+    const std::optional<std::size_t> scaled = encompassing.parameterOf(number.quantity);
+    if (!scaled) continue;
+    const ModelParameter& parameter = encompassing.parameters().parameters()[*scaled];
     const ParameterDirection direction =
         encompassing.direction(ownValues(data, verdict.values), number.quantity);
     if (direction.empty()) continue;
-    number.name = stem;
-    number.unit = at->unit;
-    number.nominal = at->value;
+    number.name = parameter.name;
+    number.unit = parameter.unit;
+    number.nominal = parameter.value;
     number.estimate = direction.front().value;
     number.sd *= std::abs(direction.front().weight);
-    number.prior *= std::abs(at->value);
+    number.prior *= std::abs(parameter.value);
   }
   return numbers;
 }

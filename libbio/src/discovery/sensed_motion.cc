@@ -34,7 +34,7 @@ SensedMotion::SensedMotion(const MusculoskeletalSystem& system, Observable what,
   const ObservedMotion observed(system, {{what_, {}}});
   needsMuscles_ = observed.needsMuscles();
   needsReactions_ = observed.needsReactions();
-  if (what_.isCoordinate()) coordinate_ = system.skeleton().indexOf(what_.of);
+  if (what_.isCoordinate()) coordinate_ = system.skeleton().indexOf(what_.object);
 }
 
 VectorXd SensedMotion::since() const {
@@ -76,11 +76,11 @@ SensedMotion::Slopes SensedMotion::slopes(const SensitivityTrajectory& s) const 
     late = behind.value.transpose();
     lateRate = behind.speed.transpose();
   }
-  const SensitivityMatrix& of = law_.lag > 0 ? late : s.q[c];
+  const SensitivityMatrix& slope = law_.lag > 0 ? late : s.q[c];
   const SensitivityMatrix& rate = law_.lag > 0 ? lateRate : s.qDot[c];
   for (Index i = 0; i < size(); ++i) {
     if (const auto w = lookAt(time, measuredAt(i)))
-      slopes.gamma.row(i) = factor * w->rows(of, rate);
+      slopes.gamma.row(i) = factor * w->rows(slope, rate);
   }
   return slopes;
 }

@@ -35,7 +35,8 @@ VectorXd MusculoskeletalProblem::withTimedForces(const OfTrial& trial, const Vec
       const double share = timedShare(trial.nodeTimes[static_cast<std::size_t>(k)],
                                       values[static_cast<Index>(force.time)], force.ends)
                                .value;
-      sum[first + k] += size * share * (force.of == TimedForce::Of::mass ? trial.heldMass[k] : 1.0);
+      sum[first + k] +=
+          size * share * (force.kind == TimedForce::Kind::mass ? trial.heldMass[k] : 1.0);
     }
   }
   return sum;
@@ -55,7 +56,7 @@ MatrixXd MusculoskeletalProblem::timedDirections(const OfTrial& trial, const Vec
       for (Index k = 0; k < numTimes; ++k) {
         const TimedShare share = timedShare(trial.nodeTimes[static_cast<std::size_t>(k)],
                                             values[static_cast<Index>(force.time)], force.ends);
-        const double weight = force.of == TimedForce::Of::mass ? trial.heldMass[k] : 1.0;
+        const double weight = force.kind == TimedForce::Kind::mass ? trial.heldMass[k] : 1.0;
         nodes(first + k, static_cast<Index>(j)) =
             weight * (wanted[j] == force.amplitude ? share.value : size * share.inTime);
       }

@@ -16,18 +16,17 @@ Eigen::VectorXd experimentalConditionsOf(const Trial& trial,
   const auto& quantities = encompassing.quantities();
   Eigen::VectorXd changes = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(quantities.size()));
   if (!trial.conditions.any()) return changes;
-  const auto change = [&](const std::string& name, double value, const char* why) {
+  const auto change = [&](std::optional<std::size_t> quantity, double value, const char* why) {
     if (value == 0) return;
-    const auto at = std::find_if(quantities.begin(), quantities.end(),
-                                 [&](const auto& quantity) { return quantity.name == name; });
-    if (at == quantities.end()) {
+    if (!quantity) {
       throw std::invalid_argument(
           fmt::format("{}: recorded {}, but {}", trial.file, inWords(trial.conditions), why));
     }
-    changes[at - quantities.begin()] = value;
+    changes[static_cast<Eigen::Index>(*quantity)] = value;
   };
-  change("known.mass", trial.conditions.massInHand, "the model moves no body that could carry it");
-  change("known.turn", trial.conditions.armTurn,
+  change(encompassing.conditions().massInHand, trial.conditions.massInHand,
+         "the model moves no body that could carry it");
+  change(encompassing.conditions().armTurn, trial.conditions.armTurn,
          "the coordinate does not turn bodies across gravity");
   if (trial.conditions.armTurn != 0 && encompassing.present().count("handforce") > 0) {
     throw std::invalid_argument(

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "bio/model/units.h"
 #include "discovery/first_part.h"
 
 namespace bio::discover {
@@ -36,9 +36,9 @@ SteppedVerdict search(const DiscoveryRequest& request, const std::vector<Trial>&
 
 std::string sentenceOf(const info::discover::PositionBreak& found, const Coordinate& coordinate,
                        bool trialsAreCut) {
-  const double unit = coordinate.isRotation ? 180 / std::numbers::pi : 1e3;
-  const std::string where = fmt::format("{} = {:.0f} {}", coordinate.name, unit * found.position,
-                                        coordinate.isRotation ? "deg" : "mm");
+  const ShownUnit unit = positionUnit(coordinate.isRotation);
+  const std::string where =
+      fmt::format("{} = {:.0f} {}", coordinate.name, unit.factor * found.position, unit.name);
   return fmt::format(
       " {} {} the model lacks a {} of {:.2g} {} at once, as where a muscle's path jumps{}",
       found.above ? "Above" : "Below", where, coordinate.isRotation ? "torque" : "force",
@@ -51,7 +51,7 @@ std::string errorText(const MusculoskeletalProblem& data, const Verdict& verdict
   const auto& sensors = data.encompassing().sensors();
   if (sensors.size() > 1) return fmt::format("{:.2g} times the noise", error / verdict.sds.sd(0));
   const std::string unit = unitOf(sensors.front(), data.encompassing().base());
-  if (unit == "rad") return fmt::format("{:.2g} deg", error * 180 / std::numbers::pi);
+  if (unit == "rad") return fmt::format("{:.2g} deg", error * degreesPerRadian);
   if (unit == "m") return fmt::format("{:.2g} mm", 1e3 * error);
   return fmt::format("{:.2g} {}", error, unit);
 }
@@ -60,8 +60,8 @@ std::string errorText(const MusculoskeletalProblem& data, const Verdict& verdict
 /// than halved the error.
 std::string refitSentence(const MusculoskeletalProblem& data, const Verdict& verdict,
                           const std::vector<info::discover::FittedNumber>& fitted) {
-  const info::discover::ExcessError& gap = verdict.gap;
-  if (verdict.finding != Finding::none || !(gap.nominal > 2 * gap.after)) return {};
+  const info::discover::ExcessError& excess = verdict.excess;
+  if (verdict.finding != Finding::none || !(excess.nominal > 2 * excess.after)) return {};
   const auto& quantities = data.quantities();
   const info::discover::Estimate* most = nullptr;
   for (const info::discover::Estimate& e : verdict.nuisancesAfter)
@@ -70,12 +70,12 @@ std::string refitSentence(const MusculoskeletalProblem& data, const Verdict& ver
   const auto number = std::find_if(fitted.begin(), fitted.end(),
                                    [&](const auto& of) { return of.quantity == most->quantity; });
   const std::string before =
-      std::isfinite(gap.nominal)
+      std::isfinite(excess.nominal)
           ? fmt::format("With its nominal parameters the model is {} off",
-                        errorText(data, verdict, gap.nominal))
+                        errorText(data, verdict, excess.nominal))
           : std::string("With its nominal parameters the model does not follow the trials");
   return fmt::format(" {}, with refitted ones {}, mostly by {} {:+.0f} %.", before,
-                     errorText(data, verdict, gap.after), number->name,
+                     errorText(data, verdict, excess.after), number->name,
                      100 * (number->estimate / number->nominal - 1));
 }
 
@@ -128,14 +128,15 @@ void repair(const DiscoveryRequest& request, DiscoveryResult& result) {
   const Verdict& verdict = result.found.verdict;
   const std::vector<int>& heldOut = result.found.options.heldOut;
   if (verdict.base.size() == 0) return;  // stopped before there was a model
-  const auto repaired = [&](const MusculoskeletalProblem& data, const Verdict& of) {
-    result.repaired = repairedModel(data, of, heldOut, request.step, request.provenance);
+  const auto repaired = [&](const MusculoskeletalProblem& data, const Verdict& found) {
+    result.repaired = repairedModel(data, found, heldOut, request.step, request.provenance);
     result.trials = result.repaired->trials;
   };
-  const auto effectOnly = [&](const MusculoskeletalProblem& data, const Verdict& of) {
+  const auto effectOnly = [&](const MusculoskeletalProblem& data, const Verdict& found) {
     result.addsEffect = true;
-    if (of.effects.empty()) return;
-    result.effectOnly = addEffects(data.encompassing(), effectsToAdd(data, of), request.provenance);
+    if (found.effects.empty()) return;
+    result.effectOnly =
+        addEffects(data.encompassing(), effectsToAdd(data, found), request.provenance);
   };
   if (verdict.finding == Finding::unknown && verdict.formula && verdict.formula->wins) {
     const info::discover::RacedFormula& formula = *verdict.formula;

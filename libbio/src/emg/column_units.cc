@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
+#include "bio/model/units.h"
 #include "bio/tables/units.h"
 
 namespace bio {
@@ -36,7 +36,7 @@ const std::string& writtenUnitOf(const Channel& channel) {
 }
 
 double factorOf(const KnownUnit& unit, const MeasuredOptions& column) {
-  return unit.factor * (column.coordinate.ends_with("_deg") ? 180 / std::numbers::pi : 1.0);
+  return unit.factor * (column.coordinate.ends_with("_deg") ? degreesPerRadian : 1.0);
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
+#include "bio/model/units.h"
 #include "bio/tables/file_error.h"
 #include "bio/tables/units.h"
 #include "emg/column_units.h"
@@ -355,8 +355,8 @@ EmgConfig emgConfigFor(const EmgConfigFile& config, const Recording& recording,
                                   config.file, config.measuredLine, channel.name, channel.unit));
     }
     const bool degrees = isAngle && unit->name == "deg";
-    out.measured->degreesPerUnit = config.degreesPerUnit.value_or(
-        isAngle && !degrees ? unit->factor * (180 / std::numbers::pi) : 1.0);
+    out.measured->degreesPerUnit =
+        config.degreesPerUnit.value_or(isAngle && !degrees ? unit->factor * degreesPerRadian : 1.0);
   }
   return out;
 }

@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 #include <stdexcept>
+
+#include "bio/model/units.h"
 
 namespace bio {
 namespace {
 
 using Kind = Observable::Kind;
-
-constexpr double radiansPerDegree = std::numbers::pi / 180;
 
 double usualSd(Kind kind, bool turns) {
   switch (kind) {
@@ -39,8 +38,8 @@ double usualSd(Kind kind, bool turns) {
 
 std::vector<ChannelCandidate> usualChannels(const MusculoskeletalSystem& system) {
   std::vector<ChannelCandidate> channels;
-  const auto add = [&](Kind kind, const std::string& of, bool turns, int axis = 0) {
-    channels.push_back({{kind, of, axis}, usualSd(kind, turns)});
+  const auto add = [&](Kind kind, const std::string& object, bool turns, int axis = 0) {
+    channels.push_back({{kind, object, axis}, usualSd(kind, turns)});
   };
   const auto& coordinates = system.skeleton().coordinates();
   for (std::size_t k = 0; k < coordinates.size(); ++k) {
@@ -81,8 +80,8 @@ std::vector<Eigen::MatrixXd> informationOf(const MusculoskeletalSystem& system,
   const Eigen::MatrixXd gamma = ObservedMotion(system, std::move(series)).linearised(motion).gamma;
   std::vector<Eigen::MatrixXd> information;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    const auto of = gamma.middleRows(static_cast<Eigen::Index>(c) * n, n);
-    information.push_back(of.transpose() * of / (candidates[c].sd * candidates[c].sd));
+    const auto rows = gamma.middleRows(static_cast<Eigen::Index>(c) * n, n);
+    information.push_back(rows.transpose() * rows / (candidates[c].sd * candidates[c].sd));
   }
   return information;
 }

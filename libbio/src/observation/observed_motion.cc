@@ -33,11 +33,11 @@ int sourceOf(const MusculoskeletalSystem& system, const Observable& what) {
   switch (what.kind) {
     case Kind::coordinate:
     case Kind::speed:
-      index = system.skeleton().indexOf(what.of);
+      index = system.skeleton().indexOf(what.object);
       if (index < 0) refuse("its coordinate must be free");
       break;
     case Kind::moment:
-      index = system.skeleton().indexOf(what.of);
+      index = system.skeleton().indexOf(what.object);
       if (index < 0 || !system.isPrescribed(index)) {
         refuse(
             "its coordinate must be prescribed or locked: where it is free to move, nothing "
@@ -45,14 +45,14 @@ int sourceOf(const MusculoskeletalSystem& system, const Observable& what) {
       }
       break;
     case Kind::marker:
-      index = placeIn(system.markers(), what.of);
+      index = placeIn(system.markers(), what.object);
       if (index < 0) refuse("the model has no such marker");
       break;
     case Kind::fibreLength:
     case Kind::pennation:
     case Kind::tendonForce:
     case Kind::activation:
-      index = placeIn(system.muscles(), what.of);
+      index = placeIn(system.muscles(), what.object);
       if (index < 0) refuse("no free or prescribed coordinate moves this muscle");
       break;
   }
@@ -129,10 +129,10 @@ ObservedMotion::Linearised ObservedMotion::evaluate(const Trajectory& motion,
         all.values[at] = value;
         if (s) all.gamma.row(at) = slopes(s->q[place], s->qDot[place]);
       };
-      const auto straight = [&](double sign, const auto& values, const auto& of) {
+      const auto straight = [&](double sign, const auto& values, const auto& member) {
         const info::LinearWeights between = info::linearAt(motion.time, times[k]);
         all.values[at] = sign * between.value(values);
-        if (s) all.gamma.row(at) = sign * between.rows((s->*of)[place]);
+        if (s) all.gamma.row(at) = sign * between.rows((s->*member)[place]);
       };
       switch (what.kind) {
         case Kind::coordinate:

@@ -42,8 +42,7 @@ TrialPredictor::TrialPredictor(const ParameterCatalogue& catalogue, const System
       series_(std::move(series)),
       selection_(std::move(selection)),
       options_(options) {
-  if (options.integrator != Integrator::variational &&
-      options.integrator != Integrator::variationalLeft) {
+  if (!isVariational(options.integrator)) {
     throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
   for (const ObservedSeries& observed : series_) {

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <numbers>
 #include <string_view>
 
+#include "bio/model/units.h"
 #include "opensim/reading.h"
 
 namespace bio::osim {
@@ -15,7 +15,7 @@ CoordinateLimitForce readLimitForce(const Reading& reading, const Element& eleme
   force.name = nameOf(source, element);
   force.coordinate = readCoordinateName(reading, element, "coordinate");
   const bool angle = findCoordinate(reading.model, force.coordinate).isRotation;
-  const double radians = angle ? std::numbers::pi / 180 : 1.0;
+  const double radians = angle ? radiansPerDegree : 1.0;
   const auto read = [&](const char* property, const char* unit, Rule rule, double fallback) {
     return readNumber(source, element, property, unit, rule, fallback);
   };

@@ -186,10 +186,11 @@ Muscle readMuscle(Reading& reading, const Element& element) {
     } else if (muscles::MuscleClasses::has(muscle.className)) {
       muscle.hill = readHill(reading, element);
     }
+  } catch (const UnreadableNumber&) {
+    throw;
   } catch (const FileError& broken) {
     // a number that a muscle cannot have is no reason to refuse the rest of the model
     const std::string what = broken.what();
-    if (what.ends_with("must be a number") || what.ends_with("must be finite")) throw;
     muscle.schutte.reset();
     muscle.hill.reset();
     reading.model.warnings.push_back(

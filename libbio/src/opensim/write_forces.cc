@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 
 #include "bio/forces/coordinate_force.h"
+#include "bio/model/units.h"
 #include "opensim/writing.h"
 
 namespace bio::osim {
@@ -81,7 +81,7 @@ double converted(double value, double factor) {
 // OpenSim wants limits of an angle in degrees, stiffness and damping per degree.
 void appendLimitForce(const Writing& writing, Element& parent, const CoordinateLimitForce& force) {
   const bool angle = findCoordinate(writing.model, force.coordinate).isRotation;
-  const double degrees = angle ? 180 / std::numbers::pi : 1.0;
+  const double degrees = angle ? degreesPerRadian : 1.0;
   Element& element = append(parent, "CoordinateLimitForce", force.name);
   appendEnabled(writing, element, force.enabled);
   appendText(element, "coordinate", force.coordinate);

@@ -8,8 +8,6 @@
 #include <cmath>
 #include <string_view>
 
-#include "bio/tables/file_error.h"
-
 namespace bio::osim {
 namespace {
 
@@ -32,6 +30,11 @@ const Element* outermostObject(const Element& element) {
   return found;
 }
 
+std::string located(const Source& source, const Element& element, const std::string& message,
+                    const Element& where) {
+  return fmt::format("{}:{}: {}: {}", source.file, where.GetLineNum(), label(element), message);
+}
+
 // A finite number that fills the whole token.
 double parseNumber(const Source& source, const Element& object, const Element& element,
                    std::string_view token, const char* unit) {
@@ -40,12 +43,14 @@ double parseNumber(const Source& source, const Element& object, const Element& e
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || end != digits.data() + digits.size()) {
-    fail(source, object, fmt::format("{} = '{}', must be a number", property, token), &element);
+    throw UnreadableNumber(located(
+        source, object, fmt::format("{} = '{}', must be a number", property, token), element));
   }
   if (!std::isfinite(value)) {
-    fail(source, object,
-         fmt::format("{} = {}{}{}, must be finite", property, token, *unit ? " " : "", unit),
-         &element);
+    throw UnreadableNumber(
+        located(source, object,
+                fmt::format("{} = {}{}{}, must be finite", property, token, *unit ? " " : "", unit),
+                element));
   }
   return value;
 }
@@ -59,8 +64,7 @@ std::string label(const Element& element) {
 
 void fail(const Source& source, const Element& element, const std::string& message,
           const Element* where) {
-  throw FileError(fmt::format("{}:{}: {}: {}", source.file,
-                              (where ? where : &element)->GetLineNum(), label(element), message));
+  throw FileError(located(source, element, message, where ? *where : element));
 }
 
 std::string nameOf(const Source& source, const Element& element) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "bio/tables/file_error.h"
+
 /// Properties of OpenSim objects in an XML tree, with messages that name file, line and element.
 namespace bio::osim {
 
@@ -20,6 +22,12 @@ struct Source {
 };
 
 enum class Rule { finite, notNegative, positive };
+
+/// A text that is no finite number.
+class UnreadableNumber : public FileError {
+ public:
+  using FileError::FileError;
+};
 
 /// "WrapCylinder 'TRI'", with "of <outer object>" where the element alone would not be found.
 std::string label(const Element& element);

@@ -10,7 +10,7 @@
 namespace bio {
 namespace {
 
-using Of = ForceNumberTarget::Of;
+using ForceKind = ForceNumberTarget::Kind;
 
 constexpr const char* axes[] = {"x", "y", "z"};
 
@@ -44,32 +44,38 @@ constexpr std::array bushingParts{
     BushingPart{"translational_damping", "N s/m", "damping of the bushing along an axis",
                 &BushingForce::translationalDamping}};
 
+// Places in the lists of ForceNumberTarget::Kind.
+enum PointSpringNumber { springStiffness, springRestLength };
+enum ElasticPathNumber { pathRestLength, pathScale, pathDamping, pathTransitionStrain };
+
 /// Null: a law of this kind has no such number.
-double ElasticPath::*elasticMember(ElasticPathKind kind, int component) {
+double ElasticPath::*elasticMember(ElasticPathKind kind, int number) {
   constexpr double ElasticPath::*members[] = {&ElasticPath::restLength, &ElasticPath::scale,
                                               &ElasticPath::damping,
                                               &ElasticPath::transitionStrain};
-  const int known = kind == ElasticPathKind::ligament ? 2 : kind == ElasticPathKind::spring ? 3 : 4;
-  return component < known ? members[component] : nullptr;
+  const int last = kind == ElasticPathKind::ligament ? pathScale
+                   : kind == ElasticPathKind::spring ? pathDamping
+                                                     : pathTransitionStrain;
+  return number <= last ? members[number] : nullptr;
 }
 
-ForceNumberRule elasticRule(const ElasticPath& path, int component) {
-  const double ElasticPath::*member = elasticMember(path.kind, component);
+ForceNumberRule elasticRule(const ElasticPath& path, int number) {
+  const double ElasticPath::*member = elasticMember(path.kind, number);
   if (!member) return {};
   const double value = path.*member;
   const bool isBlankevoort = path.kind == ElasticPathKind::blankevoort1991;
   const bool isSpring = path.kind == ElasticPathKind::spring;
-  switch (component) {
-    case 0:
+  switch (number) {
+    case pathRestLength:
       return restingLength(isBlankevoort ? "slack_length" : "resting_length",
                            "length at which it begins to pull", value);
-    case 1:
+    case pathScale:
       if (isBlankevoort) {
         return positive("linear_stiffness", "N", "force per strain", value, 1e-6, 0.1);
       }
       if (isSpring) return positive("stiffness", "N/m", "stiffness", value, 1e-6, 0.1);
       return positive("pcsa_force", "N", "factor on the force–length curve", value, 1e-6, 0.1);
-    case 2:
+    case pathDamping:
       if (isSpring) {
         return positive("dissipation", "s/m", "damping as a share of the tension", value, 1e-6);
       }
@@ -82,26 +88,26 @@ ForceNumberRule elasticRule(const ElasticPath& path, int component) {
 
 }  // namespace
 
-int numForceNumbers(Of of) {
+int numForceNumbers(ForceKind kind) {
   constexpr int counts[] = {2, 12, 4, 1};
-  return counts[static_cast<int>(of)];
+  return counts[static_cast<int>(kind)];
 }
 
 double* forceNumber(Model& model, const ForceNumberTarget& target) {
-  switch (target.of) {
-    case Of::pointSpring: {
+  switch (target.kind) {
+    case ForceKind::pointSpring: {
       PointToPointSpring& spring = model.pointSprings[target.force];
-      return target.component == 0 ? &spring.stiffness : &spring.restLength;
+      return target.number == springStiffness ? &spring.stiffness : &spring.restLength;
     }
-    case Of::bushing: {
-      const BushingPart& part = bushingParts[static_cast<std::size_t>(target.component / 3)];
-      return &(model.bushings[target.force].*part.member)[target.component % 3];
+    case ForceKind::bushing: {
+      const BushingPart& part = bushingParts[static_cast<std::size_t>(target.number / 3)];
+      return &(model.bushings[target.force].*part.member)[target.number % 3];
     }
-    case Of::elasticPath: {
+    case ForceKind::elasticPath: {
       ElasticPath& path = model.elasticPaths[target.force];
-      return &(path.*elasticMember(path.kind, target.component));
+      return &(path.*elasticMember(path.kind, target.number));
     }
-    case Of::actuator:
+    case ForceKind::actuator:
       break;
   }
   return &model.actuators[target.force].optimalForce;
@@ -112,24 +118,24 @@ double forceNumber(const Model& model, const ForceNumberTarget& target) {
 }
 
 ForceNumberRule forceNumberRule(const Model& model, const ForceNumberTarget& target) {
-  switch (target.of) {
-    case Of::pointSpring: {
+  switch (target.kind) {
+    case ForceKind::pointSpring: {
       const PointToPointSpring& spring = model.pointSprings[target.force];
-      if (target.component == 1) {
+      if (target.number == springRestLength) {
         return restingLength("rest_length", "length without force", spring.restLength);
       }
       return positive("stiffness", "N/m", "stiffness of the spring", spring.stiffness, 1e-6);
     }
-    case Of::bushing: {
-      const BushingPart& part = bushingParts[static_cast<std::size_t>(target.component / 3)];
+    case ForceKind::bushing: {
+      const BushingPart& part = bushingParts[static_cast<std::size_t>(target.number / 3)];
       const Eigen::Vector3d& all = model.bushings[target.force].*part.member;
-      const int axis = target.component % 3;
+      const int axis = target.number % 3;
       return positive(std::string(part.name) + "." + axes[axis], part.unit, part.meaning, all[axis],
                       std::max(all.maxCoeff(), 1e-6));
     }
-    case Of::elasticPath:
-      return elasticRule(model.elasticPaths[target.force], target.component);
-    case Of::actuator:
+    case ForceKind::elasticPath:
+      return elasticRule(model.elasticPaths[target.force], target.number);
+    case ForceKind::actuator:
       break;
   }
   const CoordinateActuator& actuator = model.actuators[target.force];

@@ -149,14 +149,14 @@ class Collector {
       } else {
         list_.add(wrap.name + ".radius", "m",
                   fmt::format("radius of the wrap object in {}", wrap.body), radius,
-                  around(radius, 0.3, 2, 0.15), {WrapTarget{index, 0}});
+                  around(radius, 0.3, 2, 0.15), {WrapTarget{index, WrapTarget::Quantity::radius}});
         limitRadius(list_.last(), wrap.name);
       }
       for (int axis = 0; axis < 3; ++axis) {
         const double value = wrap.frame.translation[axis];
         list_.add(fmt::format("{}.translation.{}", wrap.name, axisName(axis)), "m",
                   fmt::format("position of the wrap object in {}", wrap.body), value,
-                  position(value), {WrapTarget{index, 1 + axis}});
+                  position(value), {WrapTarget{index, WrapTarget::Quantity::translation, axis}});
       }
       const bool isSphere = wrap.shape == WrapShape::sphere ||
                             (wrap.shape == WrapShape::ellipsoid && !touched.general &&
@@ -165,7 +165,8 @@ class Collector {
         const double value = wrap.frame.orientation[axis];
         list_.add(fmt::format("{}.rotation.{}", wrap.name, axisName(axis)), "rad",
                   fmt::format("orientation of the wrap object in {} (body-fixed x-y-z)", wrap.body),
-                  value, {value - 0.6, value + 0.6, 0.1}, {WrapTarget{index, 4 + axis}});
+                  value, {value - 0.6, value + 0.6, 0.1},
+                  {WrapTarget{index, WrapTarget::Quantity::rotation, axis}});
       }
     }
   }
@@ -174,21 +175,26 @@ class Collector {
   void addNumbers(std::size_t index, const Surface& surface) {
     const WrapObject& wrap = model_.wrapObjects[index];
     const bool isTorus = wrap.shape == WrapShape::torus;
+    using Quantity = WrapTarget::Quantity;
     constexpr const char* ofTorus[] = {"outer_radius", "inner_radius"};
+    constexpr Quantity radii[] = {Quantity::outerRadius, Quantity::innerRadius};
     for (int n = 0; n < numNumbersOf(surface); ++n) {
       const double value = std::visit([&](const auto& each) { return each.number(n); }, surface);
       const std::string name = isTorus ? ofTorus[n] : fmt::format("semi_axis.{}", axisName(n));
       list_.add(
           fmt::format("{}.{}", wrap.name, name), "m",
           fmt::format("{} of the wrap object in {}", isTorus ? "radius" : "semi-axis", wrap.body),
-          value, around(value, 0.3, 2, 0.15), {WrapTarget{index, 7 + n}});
+          value, around(value, 0.3, 2, 0.15),
+          {isTorus ? WrapTarget{index, radii[n]} : WrapTarget{index, Quantity::semiAxis, n}});
       ModelParameter& number = list_.last();
       limitRadius(number, wrap.name, n);
       if (!isTorus) continue;
       // a torus keeps its hole
       constexpr double hole = 1.05;
-      if (n == 0) number.lower = std::max(number.lower, hole * wrap.radius);
-      if (n == 1) number.upper = std::max(value, std::min(number.upper, wrap.outerRadius / hole));
+      if (radii[n] == Quantity::outerRadius)
+        number.lower = std::max(number.lower, hole * wrap.radius);
+      else
+        number.upper = std::max(value, std::min(number.upper, wrap.outerRadius / hole));
     }
   }
 
@@ -198,12 +204,13 @@ class Collector {
       if (system_.skeleton().placeOf(body.name).segment == 0) continue;
       const double large = body.mass > 0 ? 5 * body.mass : 1;
       list_.add(body.name + ".mass", "kg", "mass", body.mass,
-                {0, large, std::max(0.15 * body.mass, 1e-3)}, {BodyTarget{i, 0}});
+                {0, large, std::max(0.15 * body.mass, 1e-3)},
+                {BodyTarget{i, BodyTarget::Quantity::mass}});
       for (int axis = 0; axis < 3; ++axis) {
         const double value = body.massCenter[axis];
         list_.add(fmt::format("{}.mass_center.{}", body.name, axisName(axis)), "m",
                   "mass centre in the body", value, {value - 0.1, value + 0.1, 0.01},
-                  {BodyTarget{i, 1 + axis}});
+                  {BodyTarget{i, BodyTarget::Quantity::massCenter, axis}});
       }
       constexpr const char* names[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
       const double largest = std::max({body.inertia[0], body.inertia[1], body.inertia[2], 1e-6});
@@ -213,7 +220,8 @@ class Collector {
             k < 3 ? DefaultPrior{0, value + 4 * largest, 0.3 * largest}
                   : DefaultPrior{value - largest, value + largest, 0.1 * largest};
         list_.add(fmt::format("{}.inertia.{}", body.name, names[k]), "kg m²",
-                  "inertia about the mass centre, body axes", value, prior, {BodyTarget{i, 4 + k}});
+                  "inertia about the mass centre, body axes", value, prior,
+                  {BodyTarget{i, BodyTarget::Quantity::inertia, k}});
       }
     }
   }

@@ -15,9 +15,9 @@ std::vector<ModelParameter> collectParameters(const Model& model,
 using SchutteNumber = double SchutteParameters::*;
 SchutteNumber schutteNumber(MuscleQuantity quantity);
 
-/// The number of a passive force that a component of its target means.
-double* limitForceValue(CoordinateLimitForce& force, int component);
-double* springForceValue(SpringGeneralizedForce& force, int component);
+/// The number of a passive force that a quantity of its target means.
+double& limitForceNumber(CoordinateLimitForce& force, LimitForceTarget::Quantity quantity);
+double& springForceNumber(SpringGeneralizedForce& force, SpringForceTarget::Quantity quantity);
 
 /// The number of a force on bodies or of an actuator.
 double* forceNumber(Model& model, const ForceNumberTarget& target);
@@ -30,9 +30,9 @@ struct ForceNumberRule {
   const char* meaning;
   double lower, upper, sd;
 };
-/// Rule of the component-th number of a force, in the order of ForceNumberTarget.
+/// Rule of a number of a force.
 ForceNumberRule forceNumberRule(const Model& model, const ForceNumberTarget& target);
 /// How many numbers it has.
-int numForceNumbers(ForceNumberTarget::Of of);
+int numForceNumbers(ForceNumberTarget::Kind kind);
 
 }  // namespace bio

@@ -79,37 +79,53 @@ struct SetInModel {
   }
   void operator()(const WrapTarget& target) const {
     WrapObject& wrap = model.wrapObjects[target.wrap];
-    if (target.component >= 7 && wrap.shape == WrapShape::ellipsoid) {
-      wrap.semiAxes[target.component - 7] = value;
-    } else if (target.component >= 7) {
-      (target.component == 7 ? wrap.outerRadius : wrap.radius) = value;
-    } else if (target.component >= 4) {
-      wrap.frame.orientation[target.component - 4] = value;
-    } else if (target.component >= 1) {
-      wrap.frame.translation[target.component - 1] = value;
-    } else if (wrap.shape == WrapShape::ellipsoid) {
-      for (double& axis : wrap.semiAxes) {
-        if (std::abs(axis - nominal) <= 1e-9 * nominal) axis = value;
-      }
-    } else {
+    using Quantity = WrapTarget::Quantity;
+    switch (target.quantity) {
+      case Quantity::semiAxis:
+        wrap.semiAxes[target.axis] = value;
+        return;
+      case Quantity::outerRadius:
+        wrap.outerRadius = value;
+        return;
+      case Quantity::innerRadius:
+        wrap.radius = value;
+        return;
+      case Quantity::rotation:
+        wrap.frame.orientation[target.axis] = value;
+        return;
+      case Quantity::translation:
+        wrap.frame.translation[target.axis] = value;
+        return;
+      case Quantity::radius:
+        break;
+    }
+    if (wrap.shape != WrapShape::ellipsoid) {
       wrap.radius = value;
+      return;
+    }
+    for (double& axis : wrap.semiAxes) {
+      if (std::abs(axis - nominal) <= 1e-9 * nominal) axis = value;
     }
   }
   void operator()(const BodyTarget& target) const {
     Body& body = model.bodies[target.body];
-    if (target.component == 0) {
-      body.mass = value;
-    } else if (target.component <= 3) {
-      body.massCenter[target.component - 1] = value;
-    } else {
-      body.inertia[static_cast<std::size_t>(target.component - 4)] = value;
+    switch (target.quantity) {
+      case BodyTarget::Quantity::mass:
+        body.mass = value;
+        break;
+      case BodyTarget::Quantity::massCenter:
+        body.massCenter[target.element] = value;
+        break;
+      case BodyTarget::Quantity::inertia:
+        body.inertia[static_cast<std::size_t>(target.element)] = value;
+        break;
     }
   }
   void operator()(const LimitForceTarget& target) const {
-    *limitForceValue(model.limitForces[target.force], target.component) = value;
+    limitForceNumber(model.limitForces[target.force], target.quantity) = value;
   }
   void operator()(const SpringForceTarget& target) const {
-    *springForceValue(model.springForces[target.force], target.component) = value;
+    springForceNumber(model.springForces[target.force], target.quantity) = value;
   }
   void operator()(const ForceNumberTarget& target) const { *forceNumber(model, target) = value; }
   void operator()(const ExpressionTarget& target) const {

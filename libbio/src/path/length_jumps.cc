@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
+#include "bio/model/units.h"
 #include "bio/path/path_lengths.h"
 #include "bio/path/posture_samples.h"
 #include "path/coordinate_sweeps.h"
@@ -148,7 +148,7 @@ std::vector<LengthJump> lengthJumps(const Model& model, double beyond) {
 }
 
 std::string describe(const LengthJump& jump) {
-  const double value = jump.turns ? jump.value * 180 / std::numbers::pi : jump.value;
+  const double value = jump.turns ? jump.value * degreesPerRadian : jump.value;
   // a border of a condition is a little beyond its round value
   const double shown = std::abs(value) < 5e-3 ? 0 : value;
   const bool isArmOnly = std::abs(jump.size) < leastJump;

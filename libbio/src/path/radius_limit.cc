@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 
+#include "bio/model/units.h"
 #include "path/path_reach.h"
 
 namespace bio {
@@ -72,9 +72,8 @@ std::string describe(const RadiusLimit& limit, const Path& path, const Skeleton&
   const auto& coordinates = skeleton.coordinates();
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     const bool turns = coordinates[i].isRotation;
-    text +=
-        fmt::format("{} {} = {:.3g} {}", i == 0 ? "" : ",", coordinates[i].name,
-                    turns ? limit.q[i] * 180 / std::numbers::pi : limit.q[i], turns ? "deg" : "m");
+    text += fmt::format("{} {} = {:.3g} {}", i == 0 ? "" : ",", coordinates[i].name,
+                        turns ? limit.q[i] * degreesPerRadian : limit.q[i], turns ? "deg" : "m");
   }
   return text;
 }

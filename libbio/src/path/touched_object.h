@@ -17,7 +17,7 @@ class TouchedObject {
   TouchedObject(const PathSurface& surface, const Placement<double>& X_GC,
                 const Eigen::Matrix3d& R_GB, const Eigen::Matrix3d& turnAxes,
                 const ChainObject& object, const ChainContact& contact, const Screw& wrench)
-      : isGeneral_(surface.general.has_value()),
+      : firstNumber_(surface.general ? wrap_rows::numbers : wrap_rows::radius),
         X_GC_(X_GC),
         intoBody_(R_GB.transpose()),
         intoTurns_(turnAxes.transpose() * X_GC.R.transpose()),
@@ -30,10 +30,10 @@ class TouchedObject {
   template <class Wrap>
   void addTo(Wrap& wrap) const {
     for (int n = 0; n < numNumbers_; ++n) {
-      wrap(wrapNumberRow(isGeneral_, n), 0) += numbers_[static_cast<std::size_t>(n)].length;
+      wrap(firstNumber_ + n, 0) += numbers_[static_cast<std::size_t>(n)].length;
     }
-    wrap.template block<3, 1>(1, 0) += intoBody_ * wrench_.linear;
-    wrap.template block<3, 1>(4, 0) += intoTurns_ * moment_;
+    wrap.template block<3, 1>(wrap_rows::translation, 0) += intoBody_ * wrench_.linear;
+    wrap.template block<3, 1>(wrap_rows::rotation, 0) += intoTurns_ * moment_;
   }
 
   /// Their change with a coordinate into its column; force and moment in axes that move with the
@@ -44,19 +44,19 @@ class TouchedObject {
   void addChangeTo(Wrap& wrap, Eigen::Index column, const ContactShift& shift, const Screw& changed,
                    const Screw& motion) const {
     for (int n = 0; n < numNumbers_; ++n) {
-      wrap(wrapNumberRow(isGeneral_, n), column) +=
-          numberChange(numbers_[static_cast<std::size_t>(n)], shift);
+      wrap(firstNumber_ + n, column) += numberChange(numbers_[static_cast<std::size_t>(n)], shift);
     }
     const Eigen::Vector3d originMoves = motion.linear + motion.angular.cross(X_GC_.p);
     const Eigen::Vector3d moment =
         changed.angular - X_GC_.p.cross(changed.linear) - originMoves.cross(wrench_.linear);
-    wrap.template block<3, 1>(1, column) +=
+    wrap.template block<3, 1>(wrap_rows::translation, column) +=
         intoBody_ * (changed.linear - motion.angular.cross(wrench_.linear));
-    wrap.template block<3, 1>(4, column) += intoTurns_ * (moment - motion.angular.cross(moment_));
+    wrap.template block<3, 1>(wrap_rows::rotation, column) +=
+        intoTurns_ * (moment - motion.angular.cross(moment_));
   }
 
  private:
-  bool isGeneral_;
+  int firstNumber_;  ///< row
   Placement<double> X_GC_;
   Eigen::Matrix3d intoBody_, intoTurns_;
   Screw wrench_;

@@ -22,7 +22,7 @@ PathGradient<Eigen::Dynamic> PathGradients::workspace(const TreePath& path) cons
   PathGradient<Eigen::Dynamic> gradient;
   gradient.points.assign(numPoints_, PathGradient<Eigen::Dynamic>::OfPoint::Zero(3, columns));
   gradient.wraps.assign(numWraps_,
-                        PathGradient<Eigen::Dynamic>::OfWrap::Zero(numWrapRows, columns));
+                        PathGradient<Eigen::Dynamic>::OfWrap::Zero(wrap_rows::count, columns));
   return gradient;
 }
 
@@ -48,16 +48,16 @@ void PathGradients::addTreePoint(const TreeSpan& span, std::size_t node, const S
   const std::size_t point = path_->nodes[node].point;
   const BodyPlacement& place = span.tree.placeOf(bodies_[point]);
   const Matrix3d R_BG = (span.motion.segments[place.segment].R * place.X_SB.R).transpose();
-  auto& of = out.points[point];
-  of.col(0) += R_BG * c;
+  auto& gradient = out.points[point];
+  gradient.col(0) += R_BG * c;
   for (std::size_t i = 0; i < span.supported; ++i) {
-    of.col(static_cast<Eigen::Index>(1 + i)) += R_BG * span.work.slotMoves[slopes + i];
+    gradient.col(static_cast<Eigen::Index>(1 + i)) += R_BG * span.work.slotMoves[slopes + i];
   }
   if (!chain) return;
   for (const SegmentChain::Step& step : chain->steps()) {
     const auto& S = span.motion.screw[static_cast<std::size_t>(step.mobility)];
     const Vector3d turn(S[0], S[1], S[2]);
-    of.col(1 + step.slot) -= step.sign * (R_BG * turn.cross(c));
+    gradient.col(1 + step.slot) -= step.sign * (R_BG * turn.cross(c));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "bio/model/units.h"
 #include "bio/muscle/curves/curves.h"
 #include "model/plausible.h"
 #include "skeleton/principal_moments.h"
@@ -226,7 +227,7 @@ void Reviewer::reviewForces() {
     if (findCoordinate(model, force.coordinate).isRotation && limit < 0.1 && limit > 0) {
       say(fmt::format("force '{}'", force.name),
           "limits within {:.3g} deg of 0, usually wider: written in radians?",
-          limit * 180 / std::numbers::pi);
+          limit * degreesPerRadian);
     }
   }
   for (const SpringGeneralizedForce& force : model.springForces) {

@@ -98,7 +98,7 @@ void reviewApplied(const AppliedForce& applied, bool isRotation, std::vector<Rem
 
 void reviewMotion(const MeasuredChannel& motion, const Coordinate& coordinate, double start,
                   std::vector<Remark>& remarks) {
-  const std::string subject = fmt::format("measured '{}'", motion.what.of);
+  const std::string subject = fmt::format("measured '{}'", motion.what.object);
   const double least = motion.values.minCoeff(), largest = motion.values.maxCoeff();
   const double encompassing = std::max(std::abs(least), std::abs(largest));
   const char* unit = coordinate.isRotation ? "rad" : "m";
@@ -108,7 +108,7 @@ void reviewMotion(const MeasuredChannel& motion, const Coordinate& coordinate, d
         {subject,
          fmt::format("values = {:.4g} to {:.4g} rad, must be within ±2π or the model's range: "
                      "degrees stand in a column '{}_deg', or under inDegrees=yes",
-                     least, largest, motion.what.of),
+                     least, largest, motion.what.object),
          Weight::error});
     return;
   }
@@ -164,7 +164,7 @@ std::vector<Remark> reviewTrial(const Trial& trial, const Model& model) {
   }
   for (const MeasuredChannel& channel : trial.measured) {
     if (channel.what.isCoordinate())
-      reviewMotion(channel, findCoordinate(model, channel.what.of), trial.times(0), remarks);
+      reviewMotion(channel, findCoordinate(model, channel.what.object), trial.times(0), remarks);
     reviewInterpolation(nameOf(channel.what), channel.times, channel.values, remarks);
   }
   return remarks;

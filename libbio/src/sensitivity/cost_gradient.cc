@@ -53,8 +53,7 @@ CostGradient simulateWithGradient(const MusculoskeletalSystem& system,
                                   const MotionCost& cost) {
   SimulationOptions own;
   const SimulationOptions& options = stepping::withOwnForces(system, given, own);
-  if (options.integrator != Integrator::variational &&
-      options.integrator != Integrator::variationalLeft) {
+  if (!isVariational(options.integrator)) {
     throw std::invalid_argument("gradient of a cost: integrator must be vi or vi-left");
   }
   const ExcitationSignal driven = drivenExcitation(trial, muscleNames(system), setting.mapping);

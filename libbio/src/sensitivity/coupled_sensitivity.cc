@@ -81,8 +81,7 @@ SensitivityRun::SensitivityRun(const MusculoskeletalSystem& system,
     withOwnForces(system, given.simulation, own_->simulation);
   }
   const SensitivityOptions& used = options();
-  const Integrator integrator = used.simulation.integrator;
-  if (integrator != Integrator::variational && integrator != Integrator::variationalLeft) {
+  if (!isVariational(used.simulation.integrator)) {
     throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
   checkNodes(used.externalNodes, system);

@@ -16,9 +16,9 @@ class ForceSlopes {
 
   ForceSlopes(const MusculoskeletalSystem& system, const ParameterEffects& effects)
       : system_(system), effects_(effects) {
-    using Of = ForceNumberTarget::Of;
+    using Kind = ForceNumberTarget::Kind;
     for (const auto& force : effects.forces) {
-      const bool isOnBodies = force.of == Of::pointSpring || force.of == Of::bushing;
+      const bool isOnBodies = force.kind == Kind::pointSpring || force.kind == Kind::bushing;
       if (isOnBodies && segments_.empty()) segments_ = system.bodyForces().segments();
     }
   }
@@ -43,14 +43,14 @@ class ForceSlopes {
   void evaluate(const ParameterEffects::OfForce& force, double t,
                 const SystemConfiguration<N>& configuration, const Vector& v,
                 const ExternalForce& external) {
-    switch (force.of) {
-      case ForceNumberTarget::Of::pointSpring:
+    switch (force.kind) {
+      case ForceNumberTarget::Kind::pointSpring:
         system_.bodyForces().springInNumbers(force.place, segments_, slopes_);
         break;
-      case ForceNumberTarget::Of::bushing:
+      case ForceNumberTarget::Kind::bushing:
         system_.bodyForces().bushingInNumbers(force.place, segments_, speeds_, slopes_);
         break;
-      case ForceNumberTarget::Of::elasticPath: {
+      case ForceNumberTarget::Kind::elasticPath: {
         const LengthJet<N>& path = configuration.length(system_.numMuscles() + force.place);
         const auto d =
             system_.elasticPaths()[force.place].law.inNumbers(path.length, path.dL_dq.dot(v));
@@ -62,7 +62,7 @@ class ForceSlopes {
         });
         break;
       }
-      case ForceNumberTarget::Of::actuator: {
+      case ForceNumberTarget::Kind::actuator: {
         const CoordinateActuator& actuator = system_.actuators()[force.place];
         slopes_.setZero(v.size(), 1);
         slopes_(system_.skeleton().indexOf(actuator.coordinate), 0) =

@@ -34,7 +34,7 @@ class GradientSums {
       std::size_t points = 0, wraps = 0;
       for (const QuantityEffect& e : effects.points) points = std::max(points, e.quantity / 3 + 1);
       for (const QuantityEffect& e : effects.wraps) {
-        wraps = std::max(wraps, e.quantity / numWrapRows + 1);
+        wraps = std::max(wraps, e.quantity / wrap_rows::count + 1);
       }
       muscle.points.assign(points, Eigen::Vector3d::Zero());
       muscle.wraps.assign(wraps, OfWrap::Zero());
@@ -106,8 +106,8 @@ class GradientSums {
       }
       for (const QuantityEffect& effect : effects.wraps) {
         gradient[effect.column] +=
-            effect.factor * muscle.wraps[effect.quantity / numWrapRows]
-                                        [static_cast<Index>(effect.quantity % numWrapRows)];
+            effect.factor * muscle.wraps[effect.quantity / wrap_rows::count]
+                                        [static_cast<Index>(effect.quantity % wrap_rows::count)];
       }
     }
     inertia_.addTo(gradient);
@@ -115,7 +115,7 @@ class GradientSums {
   }
 
  private:
-  using OfWrap = Eigen::Matrix<double, numWrapRows, 1>;
+  using OfWrap = Eigen::Matrix<double, wrap_rows::count, 1>;
   struct OfMuscle {
     std::size_t count = 0;  ///< of the numbers, up to the last that is wanted
     PerMuscleNumber numbers{};

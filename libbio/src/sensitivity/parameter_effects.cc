@@ -6,6 +6,29 @@
 #include "bio/path/path_gradient.h"
 
 namespace bio::stepping {
+namespace {
+
+/// Row of a wrap object's number in a PathGradient.
+std::size_t rowOf(const WrapTarget& target) {
+  using Quantity = WrapTarget::Quantity;
+  switch (target.quantity) {
+    case Quantity::translation:
+      return static_cast<std::size_t>(wrap_rows::translation + target.axis);
+    case Quantity::rotation:
+      return static_cast<std::size_t>(wrap_rows::rotation + target.axis);
+    case Quantity::semiAxis:
+      return static_cast<std::size_t>(wrap_rows::numbers + target.axis);
+    case Quantity::outerRadius:
+      return wrap_rows::numbers;
+    case Quantity::innerRadius:
+      return wrap_rows::numbers + 1;
+    case Quantity::radius:
+      break;
+  }
+  return wrap_rows::radius;
+}
+
+}  // namespace
 
 /// Enters one step of a direction where its target is touched.
 struct ParameterEffects::Enter {
@@ -60,24 +83,24 @@ struct ParameterEffects::Enter {
       for (std::size_t place = 0; place < muscle.path.wraps.size(); ++place) {
         if (muscle.path.wraps[place].wrapObject != name) continue;
         effects.muscles[i].wraps.push_back(
-            {numWrapRows * place + static_cast<std::size_t>(target.component), column, weight});
+            {wrap_rows::count * place + rowOf(target), column, weight});
       }
     }
   }
   void operator()(const BodyTarget& target) const {
-    effects.addBody(system, model.bodies[target.body], target.component, column, weight);
+    effects.addBody(system, target, model.bodies[target.body], column, weight);
   }
   void operator()(const LimitForceTarget& target) const {
     const CoordinateLimitForce& law = model.limitForces[target.force];
     effects.limitForces.push_back({law,
                                    system.skeleton().indexOf(law.coordinate),
-                                   {static_cast<std::size_t>(target.component), column, weight}});
+                                   {static_cast<std::size_t>(target.quantity), column, weight}});
   }
   void operator()(const SpringForceTarget& target) const {
     const SpringGeneralizedForce& law = model.springForces[target.force];
     effects.springForces.push_back({law,
                                     system.skeleton().indexOf(law.coordinate),
-                                    {static_cast<std::size_t>(target.component), column, weight}});
+                                    {static_cast<std::size_t>(target.quantity), column, weight}});
   }
   void operator()(const ForceNumberTarget& target) const {
     effects.addForce(system, model, target, column, weight);
@@ -123,26 +146,26 @@ ParameterEffects::ParameterEffects(const MusculoskeletalSystem& system,
   }
 }
 
-void ParameterEffects::addBody(const MusculoskeletalSystem& system, const Body& body, int component,
-                               Eigen::Index column, double weight) {
+void ParameterEffects::addBody(const MusculoskeletalSystem& system, const BodyTarget& target,
+                               const Body& body, Eigen::Index column, double weight) {
   const BodyPlacement& place = system.skeleton().placeOf(body.name);
   if (place.segment == 0) return;
   const Eigen::Matrix3d& R = place.X_SB.R;
   const Eigen::Vector3d center = R * body.massCenter + place.X_SB.p;
   Segment change;
-  if (component == 0) {
+  if (target.quantity == BodyTarget::Quantity::mass) {
     change.mass = 1;
     change.massMoment = center;
     change.secondMoment = center * center.transpose();
-  } else if (component <= 3) {
-    const Eigen::Vector3d axis = R.col(component - 1);
+  } else if (target.quantity == BodyTarget::Quantity::massCenter) {
+    const Eigen::Vector3d axis = R.col(target.element);
     change.massMoment = body.mass * axis;
     change.secondMoment = body.mass * (axis * center.transpose() + center * axis.transpose());
   } else {
     // Σ m r rᵀ about the mass centre is ½ tr(I)·1 − I
     constexpr int rows[] = {0, 1, 2, 0, 0, 1};
     constexpr int columns[] = {0, 1, 2, 1, 2, 2};
-    const int i = rows[component - 4], j = columns[component - 4];
+    const int i = rows[target.element], j = columns[target.element];
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
     inertia(i, j) = inertia(j, i) = 1;
     const Eigen::Matrix3d central = 0.5 * inertia.trace() * Eigen::Matrix3d::Identity() - inertia;
@@ -165,7 +188,7 @@ void ParameterEffects::addBody(const MusculoskeletalSystem& system, const Body& 
 void ParameterEffects::addForce(const MusculoskeletalSystem& system, const Model& model,
                                 const ForceNumberTarget& target, Eigen::Index column,
                                 double weight) {
-  using Of = ForceNumberTarget::Of;
+  using Kind = ForceNumberTarget::Kind;
   std::size_t place = target.force;
   bool acts = false;
   const auto find = [&](const auto& acting, const std::string& name) {
@@ -173,28 +196,28 @@ void ParameterEffects::addForce(const MusculoskeletalSystem& system, const Model
     while (place < acting.size() && acting[place].name != name) ++place;
     acts = place < acting.size();
   };
-  switch (target.of) {
-    case Of::pointSpring:
+  switch (target.kind) {
+    case Kind::pointSpring:
       acts = system.bodyForces().hasSpring(place);
       break;
-    case Of::bushing:
+    case Kind::bushing:
       acts = system.bodyForces().hasBushing(place);
       break;
-    case Of::elasticPath:
+    case Kind::elasticPath:
       find(system.elasticPaths(), model.elasticPaths[target.force].name);
       break;
-    case Of::actuator:
+    case Kind::actuator:
       find(system.actuators(), model.actuators[target.force].name);
       break;
   }
   if (!acts) return;
-  const QuantityEffect effect{static_cast<std::size_t>(target.component), column, weight};
+  const QuantityEffect effect{static_cast<std::size_t>(target.number), column, weight};
   for (OfForce& force : forces) {
-    if (force.of != target.of || force.place != place) continue;
+    if (force.kind != target.kind || force.place != place) continue;
     force.numbers.push_back(effect);
     return;
   }
-  forces.push_back({target.of, place, {effect}});
+  forces.push_back({target.kind, place, {effect}});
 }
 
 }  // namespace bio::stepping

@@ -26,7 +26,7 @@ class ParameterEffects {
     std::vector<QuantityEffect> fibre;       ///< quantity: a place in PerMuscleNumber
     std::vector<QuantityEffect> activation;  ///< quantity: a place in ActivationDynamics::names
     std::vector<QuantityEffect> points;      ///< quantity: 3·point + axis
-    std::vector<QuantityEffect> wraps;       ///< quantity: numWrapRows·wrap + component
+    std::vector<QuantityEffect> wraps;       ///< quantity: wrap_rows::count·wrap + row
     bool hasGeometry() const { return !points.empty() || !wraps.empty(); }
   };
   struct OfSegment {
@@ -51,9 +51,9 @@ class ParameterEffects {
   };
   /// A force on bodies or an actuator, with the numbers wanted of it.
   struct OfForce {
-    ForceNumberTarget::Of of;
+    ForceNumberTarget::Kind kind;
     std::size_t place;  ///< springs and bushings: in the model's list; others: in the system's
-    std::vector<QuantityEffect> numbers;  ///< quantity: component
+    std::vector<QuantityEffect> numbers;  ///< quantity: ForceNumberTarget::number
   };
   struct OfStart {
     int coordinate;
@@ -83,7 +83,7 @@ class ParameterEffects {
   struct Enter;
   void addForce(const MusculoskeletalSystem& system, const Model& model,
                 const ForceNumberTarget& target, Eigen::Index column, double weight);
-  void addBody(const MusculoskeletalSystem& system, const Body& body, int component,
+  void addBody(const MusculoskeletalSystem& system, const BodyTarget& target, const Body& body,
                Eigen::Index column, double weight);
 };
 

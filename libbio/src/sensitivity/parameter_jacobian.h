@@ -72,8 +72,8 @@ class DirectEffects {
           gradient.points[effect.quantity / 3].row(static_cast<Index>(effect.quantity % 3)));
     }
     for (const QuantityEffect& effect : effects.wraps) {
-      use(effect, gradient.wraps[effect.quantity / numWrapRows].row(
-                      static_cast<Index>(effect.quantity % numWrapRows)));
+      use(effect, gradient.wraps[effect.quantity / wrap_rows::count].row(
+                      static_cast<Index>(effect.quantity % wrap_rows::count)));
     }
   }
 

@@ -34,28 +34,38 @@ Eigen::MatrixXd massMatrixOf(const Skeleton& skeleton, const Eigen::VectorXd& po
   });
 }
 
-}  // namespace
+/// What moves no mass in a posture.
+struct MovesNoMass {
+  std::string what;           ///< empty: all coordinates move some
+  bool onlyTogether = false;  ///< several coordinates, each of which moves some alone
+};
 
-std::string whatMovesNoMassAt(const Skeleton& skeleton, const Eigen::VectorXd& q) {
+MovesNoMass movesNoMassAt(const Skeleton& skeleton, const Eigen::VectorXd& q) {
   const Eigen::MatrixXd M = massMatrixOf(skeleton, q);
-  if (!M.allFinite()) return "mass matrix: a value is not finite";
+  if (!M.allFinite()) return {"mass matrix: a value is not finite"};
   const std::vector<Coordinate>& free = skeleton.coordinates();
   for (Eigen::Index k = 0; k < M.rows(); ++k) {
     if (M(k, k) > negligible) continue;
     const Coordinate& c = free[static_cast<std::size_t>(k)];
-    return fmt::format("coordinate '{}' moves no mass (inertia = {:.4g} {})", c.name, M(k, k),
-                       c.isRotation ? "kg m²" : "kg");
+    return {fmt::format("coordinate '{}' moves no mass (inertia = {:.4g} {})", c.name, M(k, k),
+                        c.isRotation ? "kg m²" : "kg")};
   }
   const Eigen::VectorXd scale = M.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * M * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(scaled);
-  if (modes.eigenvalues()[0] > singular) return "";
+  if (modes.eigenvalues()[0] > singular) return {};
   std::string names;
   for (Eigen::Index k = 0; k < M.rows(); ++k) {
     if (std::abs(modes.eigenvectors()(k, 0)) < 1e-3) continue;
     names += (names.empty() ? "'" : ", '") + free[static_cast<std::size_t>(k)].name + "'";
   }
-  return fmt::format("coordinates {} can move together without moving any mass", names);
+  return {fmt::format("coordinates {} can move together without moving any mass", names), true};
+}
+
+}  // namespace
+
+std::string whatMovesNoMassAt(const Skeleton& skeleton, const Eigen::VectorXd& q) {
+  return movesNoMassAt(skeleton, q).what;
 }
 
 std::string whatMovesNoMass(const Skeleton& skeleton) {
@@ -66,12 +76,12 @@ std::string whatMovesNoMass(const Skeleton& skeleton) {
     const bool turns = skeleton.coordinates()[static_cast<std::size_t>(k)].isRotation;
     q[k] += (turns ? 0.5 : 0.01) * (1 + 0.3 * std::sin(static_cast<double>(k)));
   }
-  const std::string elsewhere = whatMovesNoMassAt(skeleton, q);
-  if (elsewhere.empty()) return "";
-  return elsewhere.starts_with("coordinates")
-             ? elsewhere + ", must not: one of them has to be locked"
-             : elsewhere +
-                   ", must move some: the bodies behind it need mass, or it has to be locked";
+  const MovesNoMass elsewhere = movesNoMassAt(skeleton, q);
+  if (elsewhere.what.empty()) return "";
+  return elsewhere.what +
+         (elsewhere.onlyTogether
+              ? ", must not: one of them has to be locked"
+              : ", must move some: the bodies behind it need mass, or it has to be locked");
 }
 
 bool requireMovedMass(const Model& model, const Skeleton& skeleton) {

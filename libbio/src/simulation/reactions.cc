@@ -8,8 +8,7 @@ void addReactions(const MusculoskeletalSystem& system, const ExcitationSignal& e
   if (system.prescribed().empty()) return;
   const auto rows = static_cast<Eigen::Index>(motion.time.size());
   motion.reaction.setZero(system.skeleton().numCoordinates(), rows);
-  const bool addsWork = options.integrator == Integrator::variational ||
-                        options.integrator == Integrator::variationalLeft;
+  const bool addsWork = isVariational(options.integrator);
   withCoordinates(system.skeleton(), [&](auto N) {
     SystemDynamics<decltype(N)::value> dynamics(system, excitation, options.externalForce,
                                                 options.prescribed);

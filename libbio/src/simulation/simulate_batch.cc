@@ -209,9 +209,7 @@ class LaneGroup {
 std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
                                          const SimulationOptions& options,
                                          LaneInstructions instructions) {
-  const bool known = (options.integrator == Integrator::variational ||
-                      options.integrator == Integrator::variationalLeft) &&
-                     !options.progress;
+  const bool known = isVariational(options.integrator) && !options.progress;
   std::vector<Trajectory> results(jobs.size());
   std::vector<std::optional<HingeModel<Single>>> arms(jobs.size());
   std::vector<bool> waiting(jobs.size(), true);

@@ -1,4 +1,5 @@
 #include "bio/skeleton/skeleton.h"
+#include "bio/model/units.h"
 #include "bio/skeleton/articulated_tree.h"
 #include "bio/skeleton/skeleton_motion.h"
 
@@ -6,7 +7,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <numbers>
 #include <set>
 #include <stdexcept>
 
@@ -75,8 +75,7 @@ std::string describePosture(const Skeleton& skeleton, const Eigen::VectorXd& q) 
   for (Eigen::Index k = 0; k < q.size(); ++k) {
     const Coordinate& c = skeleton.coordinates()[static_cast<std::size_t>(k)];
     text += fmt::format("{}{} = {:.6g} {}", k > 0 ? ", " : "", c.name,
-                        c.isRotation ? q[k] * 180 / std::numbers::pi : q[k],
-                        c.isRotation ? "deg" : "m");
+                        c.isRotation ? q[k] * degreesPerRadian : q[k], c.isRotation ? "deg" : "m");
   }
   return text;
 }
@@ -87,13 +86,13 @@ std::vector<std::string> lockRemarks(const Model& model, const SkeletonOptions& 
     for (const Coordinate& c : joint.coordinates) {
       const auto locked = options.lockedValues.find(c.name);
       if (locked == options.lockedValues.end()) continue;
-      const double unit = c.isRotation ? 180 / std::numbers::pi : 1e3;
-      const double margin = c.isRotation ? std::numbers::pi / 180 : 1e-3;
+      const ShownUnit unit = positionUnit(c.isRotation);
+      const double margin = 1 / unit.factor;
       const double value = locked->second;
       if (value >= c.rangeMin - margin && value <= c.rangeMax + margin) continue;
       remarks.push_back(fmt::format(
-          "{} is locked at {:.4g} {}, outside its range, {:.4g} to {:.4g}", c.name, value * unit,
-          c.isRotation ? "deg" : "mm", c.rangeMin * unit, c.rangeMax * unit));
+          "{} is locked at {:.4g} {}, outside its range, {:.4g} to {:.4g}", c.name,
+          value * unit.factor, unit.name, c.rangeMin * unit.factor, c.rangeMax * unit.factor));
     }
   }
   return remarks;

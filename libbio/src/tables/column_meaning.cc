@@ -17,7 +17,7 @@ ColumnMeaning channelOf(const Model& model, const Table& table, const std::strin
   if (!readObservable(bare, model, meaning.what)) return {};
   const bool isAngle = meaning.what.kind == Observable::Kind::pennation ||
                        (meaning.what.kind == Observable::Kind::speed &&
-                        findCoordinate(model, meaning.what.of).isRotation);
+                        findCoordinate(model, meaning.what.object).isRotation);
   if (suffix && !isAngle) return {};
   meaning.kind = ColumnMeaning::Kind::channel;
   meaning.name = bare;

@@ -4,19 +4,19 @@
 
 #include <charconv>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
+
+#include "bio/model/units.h"
 
 namespace bio {
 namespace {
 
 constexpr const char* massLine = "known_mass_in_hand_kg";
 constexpr const char* turnLine = "known_arm_turn_deg";
-constexpr double degree = std::numbers::pi / 180;
 
 // As somebody would write it: -45, not -45.00000000000001.
 std::string inDegrees(double angle) {
-  return fmt::format("{:.12g}", angle / degree);
+  return fmt::format("{:.12g}", angle / radiansPerDegree);
 }
 
 double numberOf(const std::map<std::string, std::string>& header, const char* name, double lowest,
@@ -59,7 +59,8 @@ const std::vector<std::string>& knownLines() {
 }
 
 ExperimentalConditions experimentalConditionsIn(const std::map<std::string, std::string>& header) {
-  return {numberOf(header, massLine, 0, 100), numberOf(header, turnLine, -180, 180) * degree};
+  return {numberOf(header, massLine, 0, 100),
+          numberOf(header, turnLine, -180, 180) * radiansPerDegree};
 }
 
 }  // namespace bio

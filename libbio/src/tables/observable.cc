@@ -35,14 +35,14 @@ std::string before(const std::string& name, const std::string& ending) {
 
 std::string nameOf(const Observable& observable) {
   if (observable.kind == Observable::Kind::marker) {
-    return observable.of + axisEndings[static_cast<std::size_t>(observable.axis)];
+    return observable.object + axisEndings[static_cast<std::size_t>(observable.axis)];
   }
-  return observable.of + endingOf(observable.kind);
+  return observable.object + endingOf(observable.kind);
 }
 
 std::string unitOf(const Observable& observable, const Model& model) {
   using Kind = Observable::Kind;
-  const auto turns = [&] { return findCoordinate(model, observable.of).isRotation; };
+  const auto turns = [&] { return findCoordinate(model, observable.object).isRotation; };
   switch (observable.kind) {
     case Kind::coordinate:
       return turns() ? "rad" : "m";

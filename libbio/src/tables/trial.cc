@@ -8,9 +8,9 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <numbers>
 
 #include "bio/model/nearest_name.h"
+#include "bio/model/units.h"
 #include "bio/tables/file_error.h"
 #include "bio/tables/trial_table.h"
 #include "bio/tables/unknown_column.h"
@@ -156,7 +156,7 @@ class TrialReader {
   }
 
   MeasuredChannel readCourse(Eigen::Index column, const ColumnMeaning& meaning) {
-    const double unit = meaning.inDegrees ? std::numbers::pi / 180 : 1.0;
+    const double unit = meaning.inDegrees ? radiansPerDegree : 1.0;
     std::vector<double> times, values;
     for (Eigen::Index row = 0; row < table_.values.rows(); ++row) {
       const double value = table_.values(row, column);
@@ -187,15 +187,14 @@ class TrialReader {
   void dropHeld(const std::string& name, double value) {
     const auto at = find(name);
     if (at == trial_.measured.end()) return;
-    const bool turns = findCoordinate(model_, name).isRotation;
+    const ShownUnit unit = positionUnit(findCoordinate(model_, name).isRotation);
     const double away = (at->values.array() - value).abs().maxCoeff();
-    if (!(away < (turns ? std::numbers::pi / 90 : 2e-3))) {
-      const double unit = turns ? 180 / std::numbers::pi : 1e3;
+    if (!(away < 2 / unit.factor)) {
       fail(
           fmt::format("column '{0}' is up to {1:.3g} {2} away from {3:.4g} {2}, at which '{0}' is "
                       "locked, must be within 2 {2}: --prescribe {0} takes its motion from the "
                       "column",
-                      name, away * unit, turns ? "deg" : "mm", value * unit));
+                      name, away * unit.factor, unit.name, value * unit.factor));
     }
     trial_.measured.erase(at);
   }

@@ -2,15 +2,14 @@
 
 #include <array>
 #include <cctype>
-#include <numbers>
 
+#include "bio/model/units.h"
 #include "tables/cells.h"
 #include "tables/length_unit.h"
 
 namespace bio {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double inch = 0.0254, foot = 0.3048, poundForce = 4.4482216152605;
 
 struct UnitSpelling {
@@ -19,8 +18,8 @@ struct UnitSpelling {
 };
 
 constexpr KnownUnit volt{"V", "V", 1}, millivolt{"mV", "V", 1e-3}, microvolt{"uV", "V", 1e-6},
-    nanovolt{"nV", "V", 1e-9}, deg{"deg", "rad", degree}, rad{"rad", "rad", 1},
-    degPerSecond{"deg/s", "rad/s", degree}, radPerSecond{"rad/s", "rad/s", 1},
+    nanovolt{"nV", "V", 1e-9}, deg{"deg", "rad", radiansPerDegree}, rad{"rad", "rad", 1},
+    degPerSecond{"deg/s", "rad/s", radiansPerDegree}, radPerSecond{"rad/s", "rad/s", 1},
     newtonMetre{"N m", "N m", 1}, newtonMillimetre{"N mm", "N m", 1e-3},
     newtonCentimetre{"N cm", "N m", 1e-2}, footPound{"ft lbf", "N m", foot*poundForce},
     inchPound{"in lbf", "N m", inch*poundForce}, newton{"N", "N", 1}, pound{"lbf", "N", poundForce},
@@ -53,7 +52,7 @@ constexpr std::array spellings{UnitSpelling{"v", volt},
                                UnitSpelling{"rad/s", radPerSecond},
                                UnitSpelling{"radian/s", radPerSecond},
                                UnitSpelling{"mrad/s", {"mrad/s", "rad/s", 1e-3}},
-                               UnitSpelling{"rpm", {"rpm", "rad/s", 6 * degree}},
+                               UnitSpelling{"rpm", {"rpm", "rad/s", 6 * radiansPerDegree}},
 
                                UnitSpelling{"nm", newtonMetre},
                                UnitSpelling{"newtonmeter", newtonMetre},

@@ -35,26 +35,26 @@ InformationCost informationCost(const InformationWeights& weights, const MatrixX
         "eigenvalue of the information is {}, the largest {}, must be > 0; start from a motion in "
         "which every parameter affects the output, if need be by a small perturbation of this one",
         lambda[0], lambda[lambda.size() - 1]));
-  const auto of = [&](Optimality which) {
+  const auto criterionOf = [&](Optimality which) {
     return criterion(which, information, repeatedTolerance);
   };
   if (weights.e > 0) {
-    const Criterion c = of(Optimality::e);
+    const Criterion c = criterionOf(Optimality::e);
     out.value += weights.e / c.value;
     out.dvalue_dI -= weights.e / (c.value * c.value) * c.dvalue_dI;
   }
   if (weights.a > 0) {
-    const Criterion c = of(Optimality::a);
+    const Criterion c = criterionOf(Optimality::a);
     out.value += weights.a * c.value;
     out.dvalue_dI += weights.a * c.dvalue_dI;
   }
   if (weights.d > 0) {
-    const Criterion c = of(Optimality::d);
+    const Criterion c = criterionOf(Optimality::d);
     out.value -= weights.d * c.value;
     out.dvalue_dI -= weights.d * c.dvalue_dI;
   }
   if (weights.condition > 0) {
-    const Criterion c = of(Optimality::conditionNumber);
+    const Criterion c = criterionOf(Optimality::conditionNumber);
     out.value += weights.condition * c.value;
     out.dvalue_dI += weights.condition * c.dvalue_dI;
   }

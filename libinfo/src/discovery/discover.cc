@@ -204,13 +204,13 @@ class Work {
     const Estimate* worst = nullptr;
     for (const Estimate& e : verdict_.calibration)
       if (data_.quantities()[e.quantity].trial < 0 &&
-          (worst == nullptr || std::abs(e.surprise) > std::abs(worst->surprise)))
+          (worst == nullptr || std::abs(e.priorZ) > std::abs(worst->priorZ)))
         worst = &e;
-    if (worst != nullptr) judgement.surprise = std::abs(worst->surprise);
+    if (worst != nullptr) judgement.priorZ = std::abs(worst->priorZ);
 
     addMoves(search_->likelihood(), after.fit, verdict_.nuisancesAfter);
     gaps(before, after, judgement);
-    judgement.explained = verdict_.gap.closedFromCalibrated;
+    judgement.explained = verdict_.excess.closedFromCalibrated;
     if (stepsTooLong()) return;
     Decision decision = decide(data_.candidates(), judgement, options_);
     const Fit smoothing =
@@ -227,7 +227,7 @@ class Work {
     verdict_.effects = decision.effects;
     verdict_.probability = decision.probability;
     verdict_.vetoed = decision.vetoed;
-    verdict_.proxy = decision.proxy;
+    verdict_.surrogate = decision.surrogate;
     collectRivals();
     // a parameter in error that is evident without a comparison of candidates
     if (decision.finding == Finding::parameter && decision.effects.empty())
@@ -281,8 +281,8 @@ class Work {
     Options options = options_;
     options.sds = verdict_.sds;
     if (options_.progress)
-      options.progress = [this, from = fraction_](const Progress& of) {
-        return options_.progress({Stage::decide, from + of.fraction * (0.97 - from), of.doing});
+      options.progress = [this, from = fraction_](const Progress& now) {
+        return options_.progress({Stage::decide, from + now.fraction * (0.97 - from), now.doing});
       };
     return options;
   }
@@ -298,15 +298,15 @@ class Work {
   }
 
   void gaps(const Entry& before, const Entry& after, Judgement& judgement) {
-    ExcessError& gap = verdict_.gap;
-    gap.floor = verdict_.sds.sd(0);
-    gap.range = rangeOf(data_, trials_, verdict_.sds);
+    ExcessError& excess = verdict_.excess;
+    excess.floor = verdict_.sds.sd(0);
+    excess.range = rangeOf(data_, trials_, verdict_.sds);
     const Noise still{verdict_.sds, 0, options_.latentTime};
     const Likelihood& likelihood = search_->likelihood();
-    gap.nominal = nominalError(likelihood, still);
-    gap.calibrated = likelihood.simulationError(search_->simulation({}).values, still.output);
-    gap.after = likelihood.simulationError(search_->simulation(chosen_).values, still.output);
-    explainExcess(gap);
+    excess.nominal = nominalError(likelihood, still);
+    excess.calibrated = likelihood.simulationError(search_->simulation({}).values, still.output);
+    excess.after = likelihood.simulationError(search_->simulation(chosen_).values, still.output);
+    explainExcess(excess);
     if (options_.heldOut.empty()) return;
     std::vector<int> every;
     for (int t = 0; t < data_.numTrials(); ++t) every.push_back(t);
@@ -319,8 +319,8 @@ class Work {
     keepStarts(without, verdict_.base);
     verdict_.heldOutStarts = keepStarts(with, verdict_.values);
     ExcessError other;
-    other.floor = gap.floor;
-    other.range = gap.range;
+    other.floor = excess.floor;
+    other.range = excess.range;
     other.nominal = nominalError(held, still);
     other.calibrated = without.error;
     other.after = with.error;

@@ -18,7 +18,7 @@ std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>
     // the prior z-score refers to the quantity's own prior, not to that of a candidate
     FreeQuantity own = fit.hypothesis.free[at];
     own.sd = data.quantities()[q].sd;
-    e.surprise = own.coordinate(e.value);
+    e.priorZ = own.coordinate(e.value);
     const Quantity& quantity = data.quantities()[q];
     const double margin = 1e-6 * (quantity.upper - quantity.lower);
     e.atBound = e.value - quantity.lower < margin || quantity.upper - e.value < margin;

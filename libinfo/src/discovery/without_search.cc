@@ -17,15 +17,15 @@ Verdict withoutSearch(const DiscoveryProblem& data, const Options& options) {
   verdict.base = verdict.values = nominalValues(data);
   const Noise still{verdict.sds, 0, options.latentTime};
   const auto errorsOf = [&](const std::vector<int>& of) {
-    ExcessError gap;
-    gap.floor = verdict.sds.sd(0);
-    gap.range = rangeOf(data, of, verdict.sds);
-    gap.nominal = gap.calibrated = gap.after =
+    ExcessError excess;
+    excess.floor = verdict.sds.sd(0);
+    excess.range = rangeOf(data, of, verdict.sds);
+    excess.nominal = excess.calibrated = excess.after =
         nominalError(Likelihood(data, of, verdict.values, options.latentTime), still);
-    explainExcess(gap);
-    return gap;
+    explainExcess(excess);
+    return excess;
   };
-  verdict.gap = errorsOf(trials);
+  verdict.excess = errorsOf(trials);
   if (!options.heldOut.empty()) verdict.heldOut = errorsOf(options.heldOut);
   verdict.finding = Finding::unknown;
   verdict.reached = Stage::finished;

@@ -37,8 +37,8 @@ Trial withFibre() {
   return trial;
 }
 
-/// θ where models end that are led to the data from a radius of 14 mm; NaN where none is led.
-double ledFrom(const Trial& trial) {
+/// θ where models end that are nudged to the data from a radius of 14 mm; NaN where none is nudged.
+double nudgedFrom(const Trial& trial) {
   CalibrationOptions options;
   options.trials.parameters = {parameter};
   options.trials.ownStart = false;
@@ -46,20 +46,20 @@ double ledFrom(const Trial& trial) {
   const TrialSet set(elbow().model, SyntheticElbow::options(), {trial}, options.trials);
   ChannelNoise channels(set, options);
   channels.weigh(channels.shown());
-  const auto led = ledStarts(set, channels, set.parameters(), {VectorXd::Constant(1, 0.014)},
-                             channels.shown().front().sd, {});
-  return led.empty() ? std::numeric_limits<double>::quiet_NaN() : led.front()[0];
+  const auto nudged = nudgedStarts(set, channels, set.parameters(), {VectorXd::Constant(1, 0.014)},
+                                   channels.shown().front().sd, {});
+  return nudged.empty() ? std::numeric_limits<double>::quiet_NaN() : nudged.front()[0];
 }
 
 TEST(NudgedStarts, LeadWhateverIsMeasuredBesideACoordinate) {
   const Trial both = withFibre();
-  EXPECT_NEAR(ledFrom(both), truth, 2e-4);
+  EXPECT_NEAR(nudgedFrom(both), truth, 2e-4);
   Trial angle = both;
   angle.measured.pop_back();
-  EXPECT_NEAR(ledFrom(angle), truth, 2e-4);
+  EXPECT_NEAR(nudgedFrom(angle), truth, 2e-4);
   Trial fibre = both;  // no coordinate is near anything
   fibre.measured.erase(fibre.measured.begin());
-  EXPECT_TRUE(std::isnan(ledFrom(fibre)));
+  EXPECT_TRUE(std::isnan(nudgedFrom(fibre)));
 }
 
 TEST(NudgedStarts, TheStepIsTestedOnTheChannelThatChangesMost) {

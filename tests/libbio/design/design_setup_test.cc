@@ -40,9 +40,9 @@ TEST(DesignSetup, LimitsAreOfAllFreeCoordinatesOrByName) {
   const MusculoskeletalSystem two(elbow.model, {{{"elbow_flexion", "shoulder_elv"}, {}}, {}, {}});
   const Coordinate& coordinate = elbow.system.skeleton().coordinates().front();
   DesignLimits limits;
-  limits.surprise = 3;
+  limits.robustness = 3;
   const DesignLimits own = withCoordinates(limits, elbow.system, {});
-  EXPECT_EQ(own.surprise, 3);
+  EXPECT_EQ(own.robustness, 3);
   ASSERT_EQ(own.coordinates.size(), 1u);
   EXPECT_EQ(own.coordinates[0].lower, coordinate.rangeMin);
   EXPECT_EQ(own.coordinates[0].upper, coordinate.rangeMax);

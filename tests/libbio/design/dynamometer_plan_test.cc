@@ -157,8 +157,8 @@ TEST(DynamometerPlan, AnIsotonicContractionEndsBeforeTheRangeDoes) {
   const DynamometerElbow elbow;
   DynamometerQuestion question = onlyOf(DynamometerExperiment::Kind::isotonic);
   question.loads = {0.5, 0.6, 0.7, 0.8, 0.9};
-  const auto rows = [&](double surprise) {
-    question.surprise = surprise;
+  const auto rows = [&](double robustness) {
+    question.robustness = robustness;
     Eigen::Index sum = 0;
     for (const DynamometerExperiment& one : elbow.plan(question).chosen) {
       sum += one.trial.values.rows();
@@ -191,7 +191,7 @@ TEST(DynamometerPlan, RefusesListsThatMakeNoSense) {
   refused([](auto& q) { q.loads = {1}; }, "below 1");
   refused([](auto& q) { q.rate = 1e9; }, "at most 1e5");
   refused([](auto& q) { q.parameters = {}; }, "no parameter");
-  refused([](auto& q) { q.surprise = -1; }, "surprise");
+  refused([](auto& q) { q.robustness = -1; }, "surprise");
   refused(
       [](auto& q) {
         q.releases = {10 * degree};

@@ -182,7 +182,7 @@ TEST(ExperimentDesign, RefusesWhatCannotBeMeant) {
   refused([](Short& s) { s.question.observed[0].sd = 0; });
   refused([](Short& s) { s.question.observed[0].sd = std::nan(""); });
   refused([](Short& s) { s.question.period = 3; });
-  refused([](Short& s) { s.question.observed[0].what.of = "pro_sup"; });
+  refused([](Short& s) { s.question.observed[0].what.object = "pro_sup"; });
   refused([](Short& s) { s.question.observed.clear(); });
   refused([](Short& s) { s.question.observed.push_back(s.question.observed[0]); });
   refused([](Short& s) { s.limits.coordinates[0].coordinate = "pro_sup"; });

@@ -121,7 +121,7 @@ TEST(SeparatingDesign, ItsTableIsTheTrial) {
   EXPECT_EQ(trial.muscles, e.trial.muscles);
   EXPECT_TRUE(trial.excitations == e.trial.excitations);
   ASSERT_EQ(trial.measured.size(), 1u);
-  EXPECT_EQ(trial.measured[0].what.of, "elbow_flexion");
+  EXPECT_EQ(trial.measured[0].what.object, "elbow_flexion");
   EXPECT_TRUE(trial.measured[0].values == e.base);
 }
 

@@ -66,20 +66,20 @@ TEST(MissingMuscle, HasTheMeanEmgOfThoseThatPullAsItDoesIfItHasNone) {
   trial.muscles.pop_back();
   trial.excitations.conservativeResize(Eigen::NoChange, trial.excitations.cols() - 1);
   const MusculoskeletalProblem data = c.data(trial, c.model);
-  EXPECT_EQ(data.encompassing().proxies().at("BRD"),
+  EXPECT_EQ(data.encompassing().synergists().at("BRD"),
             (std::vector<std::string>{"BIClong", "BICshort", "BRA"}));
-  const Trial proxied = withProxies(trial, data.encompassing());
-  ASSERT_EQ(proxied.muscles.back(), "BRD");
+  const Trial with = withSynergists(trial, data.encompassing());
+  ASSERT_EQ(with.muscles.back(), "BRD");
   const auto column = [&](const std::string& muscle) {
-    const auto at = std::find(proxied.muscles.begin(), proxied.muscles.end(), muscle);
-    return VectorXd(proxied.excitations.col(at - proxied.muscles.begin()));
+    const auto at = std::find(with.muscles.begin(), with.muscles.end(), muscle);
+    return VectorXd(with.excitations.col(at - with.muscles.begin()));
   };
   EXPECT_LT((3 * column("BRD") - column("BIClong") - column("BICshort") - column("BRA"))
                 .cwiseAbs()
                 .maxCoeff(),
             1e-15);
   // its own EMG goes before
-  EXPECT_EQ(withProxies(c.trial, data.encompassing()).excitations, c.trial.excitations);
+  EXPECT_EQ(withSynergists(c.trial, data.encompassing()).excitations, c.trial.excitations);
 }
 
 TEST(MissingMuscle, IsSwitchedOnInTheModelWithTheEffect) {

@@ -136,16 +136,16 @@ TEST(Repaired, WhereEmgOrSensorAreAtFaultDrivenTrialsGiveTheFigures) {
 
 TEST(Repaired, TheGapHasTheFiguresOfTheReplays) {
   Found f("gain");
-  f.verdict.gap.floor = 0.009;
-  f.verdict.gap.calibrated = 0.3;
-  f.verdict.heldOut = f.verdict.gap;
+  f.verdict.excess.floor = 0.009;
+  f.verdict.excess.calibrated = 0.3;
+  f.verdict.heldOut = f.verdict.excess;
   takeReplays(f.verdict, f.repaired);
-  EXPECT_EQ(f.verdict.gap.after, f.repaired.trials[0].after);
+  EXPECT_EQ(f.verdict.excess.after, f.repaired.trials[0].after);
   EXPECT_EQ(f.verdict.heldOut->after, f.repaired.trials[1].after);
-  EXPECT_EQ(f.verdict.gap.nominal, f.repaired.trials[0].nominal);
-  ASSERT_TRUE(f.verdict.gap.closedFromCalibrated);
+  EXPECT_EQ(f.verdict.excess.nominal, f.repaired.trials[0].nominal);
+  ASSERT_TRUE(f.verdict.excess.closedFromCalibrated);
   const double shown = 1.02 * f.repaired.trials[0].after;
-  EXPECT_NEAR(*f.verdict.gap.closedFromCalibrated,
+  EXPECT_NEAR(*f.verdict.excess.closedFromCalibrated,
               1 - (shown * shown - 0.009 * 0.009) / (0.3 * 0.3 - 0.009 * 0.009), 1e-9);
 }
 

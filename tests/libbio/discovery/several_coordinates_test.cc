@@ -44,7 +44,7 @@ Trial recorded(const ArmOfSeven& system, const std::vector<Observable>& channels
     const Index every = i == 1 ? 3 : 2;
     VectorXd times(40 / every);
     for (Index k = 0; k < times.size(); ++k) times[k] = trial.times[every * k + 1];
-    const double first = channels[i].of == "shoulder_elv" ? 0.8 : 0.7;
+    const double first = channels[i].object == "shoulder_elv" ? 0.8 : 0.7;
     trial.measured.push_back(
         {channels[i], times, VectorXd::LinSpaced(times.size(), first, first + 0.1)});
   }

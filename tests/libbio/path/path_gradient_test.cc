@@ -61,7 +61,7 @@ void gradientsMatchDifferences(const Model& model, const std::vector<std::string
       std::size_t index = 0;
       while (model.wrapObjects[index].name != muscle.path.wraps[w].wrapObject) ++index;
       ++wraps;
-      for (int c = 0; c < numWrapRows; ++c) {
+      for (int c = 0; c < wrap_rows::count; ++c) {
         check(
             [&](Model& other, double shift) {
               WrapObject& wrap = other.wrapObjects[index];

@@ -159,7 +159,7 @@ TEST_F(TrialFile, MeasuredAnglesAreRadiansUnlessToldOtherwise) {
   const Trial radians = read("time,BRA,TRIlong,elbow_flexion\n0,0,0,0.5\n1,0,0,0.6\n");
   EXPECT_EQ(radians.measured.at(0).values(1), 0.6);
   const Trial suffix = read("time,BRA,TRIlong,elbow_flexion_deg\n0,0,0,30\n1,0,0,40\n");
-  EXPECT_EQ(suffix.measured.at(0).what.of, "elbow_flexion");
+  EXPECT_EQ(suffix.measured.at(0).what.object, "elbow_flexion");
   EXPECT_DOUBLE_EQ(suffix.measured.at(0).values(1), 40 * degree);
   const Trial header = read(
       "t\ninDegrees=yes\nendheader\ntime\tBRA\tTRIlong\telbow_flexion\tdrawer\n"
@@ -217,7 +217,7 @@ TEST_F(TrialFile, UnderstandsThePathsOfOpenSim4) {
   const Trial trial = read(
       "time,/forceset/BRA,TRIlong,/jointset/elbow/elbow_flexion/value\n0,0.5,0,0.1\n1,0.5,0,0.2\n");
   EXPECT_EQ(trial.excitations(0, 0), 0.5);
-  EXPECT_EQ(trial.measured.at(0).what.of, "elbow_flexion");
+  EXPECT_EQ(trial.measured.at(0).what.object, "elbow_flexion");
 }
 
 TEST_F(TrialFile, SaysInOneLineWhatIsWrong) {

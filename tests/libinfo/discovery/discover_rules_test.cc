@@ -55,7 +55,7 @@ TEST(Decide, SaysUnknownWhenTheBaseDoesNotFitAndNothingEarnedItsPlace) {
 
 TEST(Decide, SaysParameterWhenOneIsOffByMoreThanItsTolerance) {
   Judgement j = raced({{{0}, 3.0}}, {});
-  j.surprise = 3.2;
+  j.priorZ = 3.2;
   EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::parameter);
   EXPECT_EQ(decide(catalogue(), raced({{{3}, 9.0}, {{0}, 2.0}}, {3}), {}).finding,
             Finding::parameter);
@@ -70,7 +70,7 @@ TEST(Decide, KeepsANameThatHeldOutTrialsShowWithOtherParameters) {
     j.replicated = true;
     const Decision d = decide(catalogue(), j, {});
     EXPECT_EQ(d.finding, Finding::named);
-    EXPECT_FALSE(d.proxy);
+    EXPECT_FALSE(d.surrogate);
     EXPECT_TRUE(d.vetoed);
     EXPECT_EQ(d.probability, 0);
     j.*against = false;
@@ -88,7 +88,7 @@ TEST(Decide, NamesNothingThatExplainsNothing) {
     j.explained = share;
     const Decision d = decide(catalogue(), j, {});
     EXPECT_EQ(d.finding, Finding::unknown) << share;
-    EXPECT_TRUE(d.proxy);
+    EXPECT_TRUE(d.surrogate);
   }
   j.explained.reset();  // the base model's error is about that of the sensor
   EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::named);
@@ -110,7 +110,7 @@ TEST(Decide, SaysUnknownWhenALawFitsOnlyAtTheEdgeOfItsShape) {
   EXPECT_EQ(found().finding, Finding::named);
   form.atBound = true;
   EXPECT_EQ(found().finding, Finding::unknown);
-  EXPECT_TRUE(found().proxy);
+  EXPECT_TRUE(found().surrogate);
   j.raced[2].logEvidence = 28;  // a rival may be right
   EXPECT_EQ(found().finding, Finding::ambiguous);
 }
@@ -172,7 +172,7 @@ TEST(Decide, CallsALeaderASurrogateWhereSomethingIsLeft) {
     if (what == 6) j.nonparametricWins = true;
     const Decision d = decide(catalogue(), j, {});
     EXPECT_EQ(d.finding, Finding::unknown) << what;
-    EXPECT_TRUE(d.proxy);
+    EXPECT_TRUE(d.surrogate);
     ASSERT_EQ(d.effects.size(), 1U);
     EXPECT_EQ(d.probability, 0);
     EXPECT_TRUE(std::isnan(d.effects[0].probability)) << what;
@@ -200,17 +200,17 @@ TEST(Adequacy, KnowsTheChiSquareDistribution) {
 }
 
 TEST(ExcessError, IsClosedByWhatIsLeftAboveTheFloor) {
-  ExcessError gap;
-  gap.nominal = 10;
-  gap.calibrated = 5;
-  gap.after = 2;
-  gap.floor = 1;
-  explainExcess(gap);
-  EXPECT_DOUBLE_EQ(*gap.closedFromCalibrated, 1 - 3.0 / 24);
-  EXPECT_DOUBLE_EQ(*gap.closedFromNominal, 1 - 3.0 / 99);
-  gap.calibrated = 1.02;
-  explainExcess(gap);
-  EXPECT_FALSE(gap.closedFromCalibrated);
+  ExcessError excess;
+  excess.nominal = 10;
+  excess.calibrated = 5;
+  excess.after = 2;
+  excess.floor = 1;
+  explainExcess(excess);
+  EXPECT_DOUBLE_EQ(*excess.closedFromCalibrated, 1 - 3.0 / 24);
+  EXPECT_DOUBLE_EQ(*excess.closedFromNominal, 1 - 3.0 / 99);
+  excess.calibrated = 1.02;
+  explainExcess(excess);
+  EXPECT_FALSE(excess.closedFromCalibrated);
 }
 
 TEST(BenjaminiHochberg, KeepsTheRightOnes) {

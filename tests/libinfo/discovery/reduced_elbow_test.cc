@@ -70,8 +70,8 @@ TEST(ReducedElbow, FollowsTheIndependentTruthWithEveryEffect) {
     EXPECT_LT(error * 57.29578, 0.02) << id;
     if (id != "none") {  // and without it, not
       const VectorXd base = info::discover::nominalValues(elbow);
-      const double gap = (elbow.outputs(0, base, {}) - elbow.measured(0)).cwiseAbs().maxCoeff();
-      EXPECT_GT(gap * 57.29578, 0.5) << id;
+      const double excess = (elbow.outputs(0, base, {}) - elbow.measured(0)).cwiseAbs().maxCoeff();
+      EXPECT_GT(excess * 57.29578, 0.5) << id;
     }
   }
 }

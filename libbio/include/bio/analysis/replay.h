@@ -119,17 +119,16 @@ struct TrialReplay {
 TrialReplay replayTrial(const MusculoskeletalSystem& system, const Trial& trial,
                         SimulationOptions options, TrialBeginning beginning);
 
-/// One sentence for each free coordinate that leaves its range in the model, with the time; only
-/// the model's passive forces limit it.
-std::vector<std::string> rangeRemarks(const MusculoskeletalSystem& system,
-                                      const Trajectory& trajectory);
-
-/// First time at which a motion leaves the valid range of its model.
+/// Time at which a motion leaves the valid range of its model.
 struct LeftRange {
   double time = 0;   ///< [s]
   std::string name;  ///< of the coordinate or muscle
   std::string what;  ///< one sentence without full stop
 };
+/// Each free coordinate that leaves its range in the model, with the first time; only the model's
+/// passive forces limit it.
+std::vector<LeftRange> leftRanges(const MusculoskeletalSystem& system,
+                                  const Trajectory& trajectory);
 /// The first time at which a free coordinate is outside its range by more than a tenth of it (and
 /// 1° or 1 mm), or a fibre outside 0.2 to 2 optimal lengths; nothing if there is none.
 std::optional<LeftRange> leftRange(const MusculoskeletalSystem& system,

@@ -46,10 +46,11 @@ struct CalibrationOptions {
 };
 
 struct CalibratedParameter {
-  info::Parameter asked;  ///< start, bounds, prior
-  double model = 0;       ///< value in the model
-  double priorSd = 0;     ///< prior standard deviation
-  bool ofTrial = false;   ///< initial state of one trial, not a parameter of the model
+  info::Parameter asked;   ///< start, bounds, prior
+  ParameterTarget target;  ///< what it sets; of several targets the first
+  double model = 0;        ///< value in the model
+  double priorSd = 0;      ///< prior standard deviation
+  bool ofTrial = false;    ///< initial state of one trial, not a parameter of the model
   double value = 0;
   bool identifiable = false;
   bool atBound = false;

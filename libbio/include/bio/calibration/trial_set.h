@@ -95,6 +95,8 @@ class TrialSet {
   std::size_t numCommon() const { return selection_.size(); }
   /// θ of the model and the trials, with the catalogue's bounds; those of trials have a prior.
   const std::vector<info::Parameter>& parameters() const { return parameters_; }
+  /// What each of them sets; of several targets the first.
+  const std::vector<ParameterTarget>& targets() const { return targets_; }
   /// Prior standard deviation of each, in its unit.
   const Eigen::VectorXd& priorSds() const { return priorSds_; }
 
@@ -152,6 +154,7 @@ class TrialSet {
   std::vector<Eigen::Index> ownBegin_;
   std::vector<Latent> latent_;
   std::vector<info::Parameter> parameters_;
+  std::vector<ParameterTarget> targets_;
   Eigen::VectorXd priorSds_;
   std::vector<MeasuredSeries> series_;
   std::vector<MeasuredGroup> channels_;

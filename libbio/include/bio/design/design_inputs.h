@@ -37,7 +37,7 @@ struct DesignLimits {
   /// many prior standard deviations (given, else default) ≥ 0. Without this margin the most
   /// informative motion is an unstable equilibrium, where a tiny parameter error changes the motion
   /// completely.
-  double surprise = 0.5;
+  double robustness = 0.5;
 };
 
 /// The inputs that a design may change: torques from outside on free coordinates, and excitations

@@ -89,9 +89,9 @@ struct DynamometerQuestion {
   double angleNoise = 0.01;  ///< of a sample of the coordinate [rad] or [m] > 0
   double rate = 100;         ///< samples per second
   /// Isotonic contractions: the joint is free within the coordinate's range and up to this speed
-  /// [rad/s] or [m/s], even if the parameters are off by `surprise` prior standard deviations, to
+  /// [rad/s] or [m/s], even if the parameters are off by `robustness` prior standard deviations, to
   /// first order (as DesignLimits says).
-  double fastest = 8.7, surprise = 0.5;
+  double fastest = 8.7, robustness = 0.5;
   int threads = 1;
 };
 

@@ -24,7 +24,7 @@ struct DesignQuestion {
   info::Optimality criterion = info::Optimality::e;  ///< a, d or e, of scaled parameters
 };
 
-/// Extremes of a motion, and those with parameters off by DesignLimits::surprise [rad] or [m].
+/// Extremes of a motion, and those with parameters off by DesignLimits::robustness [rad] or [m].
 struct MotionRange : MotionExtremes {
   double surprisedLowest = 0, surprisedHighest = 0;
 };
@@ -89,9 +89,9 @@ class ExperimentDesign {
   bool keepsLimits(const DesignedExperiment& experiment) const;
 
   /// Deviations of the observables from what is predicted, to first order, if the parameters of
-  /// interest are off by DesignLimits::surprise prior standard deviations: measured times ×
+  /// interest are off by DesignLimits::robustness prior standard deviations: measured times ×
   /// observables, in unitOf().
-  Eigen::MatrixXd surpriseAt(const DesignedExperiment& experiment) const;
+  Eigen::MatrixXd allowanceAt(const DesignedExperiment& experiment) const;
   /// Bound on the first parameter from the measurements up to each measured time; NaN: unbounded.
   Eigen::VectorXd boundOverTime(const DesignedExperiment& experiment) const;
 
@@ -113,7 +113,7 @@ class ExperimentDesign {
   double penalty(const SensitivityTrajectory& s, double price) const;
   /// How far what has these derivatives is from where it was expected.
   template <class Rows>
-  Eigen::VectorXd surpriseOf(const Rows& slopes) const;
+  Eigen::VectorXd allowanceOf(const Rows& slopes) const;
   std::vector<MotionRange> rangesOf(const SensitivityTrajectory& s) const;
   bool keepsRanges(const std::vector<MotionRange>& ranges) const;
   class Runs;

@@ -17,7 +17,7 @@ namespace bio::discover {
 /// called <coordinate>_<id>, by which it is recognised again. Effects of EMG and sensor cannot be
 /// written into a model: a simulation has to pass the excitations through `mapping`
 /// (drivenExcitation) and to compare the sensor's reading. A muscle that was switched on needs an
-/// excitation (withProxies).
+/// excitation (withSynergists).
 struct Augmented {
   Model model;
   EmgMapping mapping;

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct Meaning {
   Kind kind = Kind::shift;
   std::vector<Part> parts;
   std::size_t sensor = 0;  ///< of EncompassingModel::sensors(), for effects of a sensor
+  /// Index in ParameterCatalogue of the one parameter that a scale multiplies, of which a result
+  /// tells the value in place of the factor.
+  std::optional<std::size_t> parameter = {};
 };
 
 /// Muscles whose names begin with the same capitals: TRIlong, TRIlat and TRImed are TRI.
@@ -56,6 +60,13 @@ struct MovingCoordinate {
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
 
   double middle() const { return (coordinate.rangeMin + coordinate.rangeMax) / 2; }
+};
+
+/// Quantities that trials are known to have (ExperimentalConditions), where the model can have
+/// them.
+struct ConditionQuantities {
+  std::optional<std::size_t> massInHand;  ///< [kg]
+  std::optional<std::size_t> armTurn;     ///< [rad]
 };
 
 /// Names of coordinates; one name is a list of one.
@@ -129,6 +140,7 @@ class EncompassingModel {
   void extend(std::size_t quantity, Meaning::Part part) {
     meanings_.at(quantity).parts.push_back(part);
   }
+  void setConditions(const ConditionQuantities& conditions) { conditions_ = conditions; }
   void addNuisance(std::size_t quantity) { nuisances_.push_back(quantity); }
   void add(Candidate candidate) { candidates_.push_back(std::move(candidate)); }
   /// Records an effect that the base model already has, so that it is not a candidate.
@@ -140,8 +152,8 @@ class EncompassingModel {
   std::size_t addLaw(ExpressionBasedCoordinateForce law);
   /// Switches on a muscle that is switched off in the base model, while a quantity requires it. Its
   /// F0 becomes negligible and is the number whose index is returned. Its EMG is that of the trial,
-  /// or the mean of those of `proxies` (at least one).
-  std::size_t addMuscle(std::size_t muscle, std::vector<std::string> proxies);
+  /// or the mean of those of `synergists` (at least one).
+  std::size_t addMuscle(std::size_t muscle, std::vector<std::string> synergists);
   void addTimedForce(const TimedForce& force) { timedForces_.push_back(force); }
   /// Latest start and earliest end of the trials [s]: between them timed forces may change.
   void trialsLast(double first, double last);
@@ -156,12 +168,13 @@ class EncompassingModel {
 
   const std::vector<Quantity>& quantities() const { return quantities_; }
   const std::vector<std::size_t>& nuisances() const { return nuisances_; }
+  const ConditionQuantities& conditions() const { return conditions_; }
   const std::vector<Candidate>& candidates() const { return candidates_; }
   /// Ids of effects that the base model already has, with the elements concerned.
   const std::map<std::string, std::string>& present() const { return present_; }
   Eigen::VectorXd nominal() const;
   /// Muscles whose EMG represents that of a muscle which was added.
-  const std::map<std::string, std::vector<std::string>>& proxies() const { return proxies_; }
+  const std::map<std::string, std::vector<std::string>>& synergists() const { return synergists_; }
 
   /// Model and EMG mapping at values; the start is the default position at rest.
   /// @param wanted quantities whose derivatives are required: their forces are switched on
@@ -174,6 +187,9 @@ class EncompassingModel {
   SensorLaw sensorAt(const Eigen::VectorXd& values, std::size_t sensor = 0) const;
   std::size_t sensorOf(std::size_t quantity) const { return meanings_[quantity].sensor; }
   const std::vector<TimedForce>& timedForces() const { return timedForces_; }
+  std::optional<std::size_t> parameterOf(std::size_t quantity) const {
+    return meanings_[quantity].parameter;
+  }
   Meaning::Kind kindOf(std::size_t quantity) const { return meanings_[quantity].kind; }
 
  private:
@@ -217,11 +233,12 @@ class EncompassingModel {
   std::map<std::string, std::string> present_;
   std::vector<Law> laws_;
   std::vector<TimedForce> timedForces_;
-  std::map<std::string, std::vector<std::string>> proxies_;
+  ConditionQuantities conditions_;
+  std::map<std::string, std::vector<std::string>> synergists_;
 };
 
 /// The trial with an excitation for every muscle that was added: its own, or the mean of its
-/// proxies. @throws std::invalid_argument if the trial lacks a proxy
-Trial withProxies(Trial trial, const EncompassingModel& encompassing);
+/// synergists. @throws std::invalid_argument if the trial lacks one of them
+Trial withSynergists(Trial trial, const EncompassingModel& encompassing);
 
 }  // namespace bio::discover

@@ -119,7 +119,7 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   /// Sum of the timed forces at nodes(trial); empty if there is none.
   Eigen::VectorXd timedForce(int trial, const Eigen::VectorXd& values) const;
   const MusculoskeletalProblemOptions& options() const { return options_; }
-  /// The trial as given, with an excitation for every muscle that was added (withProxies).
+  /// The trial as given, with an excitation for every muscle that was added (withSynergists).
   const Trial& trial(int trial) const { return of(trial).trial; }
   /// The complete simulation at `values`, without a latent force.
   /// @throws what MusculoskeletalSystem, initialState and simulate throw

@@ -12,7 +12,7 @@ namespace bio::discover {
 ///     w = g·v(ỹ) − |v(ỹ)|²ỹ″ − v·∂v/∂q ỹ′²,   v = ∂(mass centre of the hand)/∂q,
 /// its moment on a coordinate that moves as measured.
 struct TimedForce {
-  enum class Of { force, mass } of = Of::force;
+  enum class Kind { force, mass } kind = Kind::force;
   bool ends = false;
   std::size_t coordinate = 0;  ///< of EncompassingModel::coordinates()
   std::size_t amplitude = 0;   ///< quantities

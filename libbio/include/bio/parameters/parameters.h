@@ -33,37 +33,54 @@ struct PointTarget {
 };
 struct WrapTarget {
   std::size_t wrap;
-  int component;  ///< 0 radius, 1–3 translation, 4–6 rotation in the body; 7–9 semi-axes of an
-                  ///< ellipsoid; 7, 8 outer and inner radius of a torus
+  enum class Quantity {
+    radius,       ///< of a cylinder or sphere
+    translation,  ///< in the body
+    rotation,     ///< in the body
+    semiAxis,     ///< of an ellipsoid
+    outerRadius,  ///< of a torus
+    innerRadius   ///< of a torus
+  } quantity;
+  int axis = 0;  ///< of a translation, a rotation or a semi-axis: 0 x, 1 y, 2 z
+  /// Whether it is a radius or a semi-axis.
+  bool isSize() const {
+    return quantity != Quantity::translation && quantity != Quantity::rotation;
+  }
   friend bool operator==(const WrapTarget&, const WrapTarget&) = default;
 };
 struct BodyTarget {
   std::size_t body;
-  int component;  ///< 0 mass, 1–3 mass centre, 4–9 inertia xx yy zz xy xz yz about it
+  enum class Quantity { mass, massCenter, inertia } quantity;
+  int element = 0;  ///< x y z of the mass centre; xx yy zz xy xz yz of the inertia about it
   friend bool operator==(const BodyTarget&, const BodyTarget&) = default;
 };
-/// upper limit, upper stiffness, lower limit, lower stiffness, damping, transition
 struct LimitForceTarget {
   std::size_t force;
-  int component;  ///< 0–5 in that order
+  enum class Quantity {
+    upperLimit,
+    upperStiffness,
+    lowerLimit,
+    lowerStiffness,
+    damping,
+    transition
+  } quantity;
   friend bool operator==(const LimitForceTarget&, const LimitForceTarget&) = default;
 };
-/// stiffness, rest length, viscosity
 struct SpringForceTarget {
   std::size_t force;
-  int component;  ///< 0–2 in that order
+  enum class Quantity { stiffness, restLength, viscosity } quantity;
   friend bool operator==(const SpringForceTarget&, const SpringForceTarget&) = default;
 };
 /// A number of a force on bodies or of an actuator.
 struct ForceNumberTarget {
-  enum class Of {
+  enum class Kind {
     pointSpring,  ///< stiffness, rest length
     bushing,      ///< rotational and translational stiffness, rotational and translational damping
     elasticPath,  ///< rest length, scale, damping, transition strain
     actuator      ///< optimal force
-  } of;
+  } kind;
   std::size_t force;
-  int component;  ///< in that order; x, y, z of a bushing's each
+  int number;  ///< place in that list; x, y, z of a bushing's each
   friend bool operator==(const ForceNumberTarget&, const ForceNumberTarget&) = default;
 };
 /// A constant of an expression.
@@ -102,6 +119,12 @@ using ParameterTarget =
     std::variant<MuscleTarget, PointTarget, WrapTarget, BodyTarget, LimitForceTarget,
                  SpringForceTarget, ExpressionTarget, GravityTarget, EmgTarget, InitialTarget,
                  MuscleNumberTarget, ForceNumberTarget>;
+
+/// Whether it is a knot of a latent excitation.
+inline bool isKnot(const ParameterTarget& target) {
+  const auto* emg = std::get_if<EmgTarget>(&target);
+  return emg && emg->what == EmgTarget::What::latent;
+}
 
 /// A parameter of the model, of the relation between EMG and excitation, or of the initial state,
 /// with its name.

@@ -9,12 +9,14 @@
 
 namespace bio {
 
-/// Rows of a PathGradient for each wrap object.
-inline constexpr int numWrapRows = 10;
-/// The row of a number of a surface: 0 of a cylinder or sphere, 7 … 9 of a general surface.
-constexpr int wrapNumberRow(bool isGeneral, int number) {
-  return isGeneral ? 7 + number : 0;
-}
+/// Rows of a PathGradient for each wrap object; of a vector the first of three.
+namespace wrap_rows {
+inline constexpr int radius = 0;       ///< of a cylinder or sphere
+inline constexpr int translation = 1;  ///< in the body
+inline constexpr int rotation = 4;     ///< in the body
+inline constexpr int numbers = 7;  ///< semi-axes of an ellipsoid; outer, inner radius of a torus
+inline constexpr int count = 10;
+}  // namespace wrap_rows
 
 /// Derivatives of a muscle–tendon length and its slope with respect to the parameters of the path:
 /// column 0 is ∂ℓ/∂θ, column 1 + k is ∂²ℓ/∂q_k∂θ, one row per θ. N = Eigen::Dynamic: k counts the
@@ -23,10 +25,8 @@ template <int N>
 struct PathGradient {
   static constexpr int columns = N == Eigen::Dynamic ? Eigen::Dynamic : 1 + N;
   using OfPoint = Eigen::Matrix<double, 3, columns>;
-  /// radius of a cylinder or sphere; translation x, y, z and rotation x, y, z of the wrap object in
-  /// its body; of an ellipsoid the semi-axes x, y, z, of a torus the outer radius (of the ring) and
-  /// the inner one (of the tube)
-  using OfWrap = Eigen::Matrix<double, numWrapRows, columns>;
+  /// by wrap_rows
+  using OfWrap = Eigen::Matrix<double, wrap_rows::count, columns>;
   std::vector<OfPoint> points;  ///< of Path::points, over their locations in their bodies [1]
   std::vector<OfWrap> wraps;    ///< of Path::wraps; unused for a wrap that is left out
 };

@@ -20,6 +20,10 @@ enum class Integrator {
   rungeKutta4,      ///< classical, explicit; fourth order, stable for tiny steps only
   cvode             ///< SUNDIALS BDF, adaptive, analytic Jacobian: the converged reference
 };
+/// Whether it is one of the two variational ones, which have sensitivities.
+constexpr bool isVariational(Integrator integrator) {
+  return integrator == Integrator::variational || integrator == Integrator::variationalLeft;
+}
 
 /// State of a system; column vectors over free coordinates and over muscles.
 struct SystemState {

@@ -33,8 +33,8 @@ struct Observable {
     activation
   };
   Kind kind = Kind::coordinate;
-  std::string of;  ///< coordinate, muscle, or BODY.MARKER
-  int axis = 0;    ///< of a marker: 0 x, 1 y, 2 z of the ground
+  std::string object;  ///< coordinate, muscle, or BODY.MARKER
+  int axis = 0;        ///< of a marker: 0 x, 1 y, 2 z of the ground
   bool isCoordinate() const { return kind == Kind::coordinate; }
   friend bool operator==(const Observable&, const Observable&) = default;
 };

@@ -35,7 +35,8 @@ void addViscousDamping(EncompassingModel& model, const MovingCoordinate& at) {
       model.addLaw(SpringGeneralizedForce{lawName(at, "visc"), at.coordinate.name});
   const std::size_t b = model.add(
       amplitude(model.idAt(at, "visc.viscosity"), units.viscosity(), 0, 3 * size, 0.3 * size),
-      {Meaning::Kind::shift, {{model.number(SpringForceTarget{law, 2}, 0)}}});
+      {Meaning::Kind::shift,
+       {{model.number(SpringForceTarget{law, SpringForceTarget::Quantity::viscosity}, 0)}}});
   model.lawFollows({b});
   model.add(candidateAt(model, at, "visc", "viscous joint damping",
                         "The joint resists its motion in proportion to the speed.", {b},

@@ -37,11 +37,13 @@ void addStiffness(EncompassingModel& model, const MovingCoordinate& at) {
       model.addLaw(SpringGeneralizedForce{lawName(at, "stiffness"), at.coordinate.name});
   const std::size_t k = model.add(
       amplitude(model.idAt(at, "stiffness.stiffness"), units.stiffness(), 0, 10 * size, 2 * size),
-      {Meaning::Kind::shift, {{model.number(SpringForceTarget{law, 0}, 0)}}});
-  const std::size_t rest =
-      model.add(shape(model.idAt(at, "stiffness.rest"), units.position, at.middle(), q.rangeMin,
-                      q.rangeMax, 0.3 * span),
-                {Meaning::Kind::shift, {{model.number(SpringForceTarget{law, 1}, 0)}}});
+      {Meaning::Kind::shift,
+       {{model.number(SpringForceTarget{law, SpringForceTarget::Quantity::stiffness}, 0)}}});
+  const std::size_t rest = model.add(
+      shape(model.idAt(at, "stiffness.rest"), units.position, at.middle(), q.rangeMin, q.rangeMax,
+            0.3 * span),
+      {Meaning::Kind::shift,
+       {{model.number(SpringForceTarget{law, SpringForceTarget::Quantity::restLength}, 0)}}});
   model.lawFollows({k, rest});
   model.add(candidateAt(model, at, "stiffness", "joint stiffness",
                         "A spring pulls the joint towards a rest position.", {k, rest},
@@ -59,24 +61,27 @@ void addLimits(EncompassingModel& model, const MovingCoordinate& at) {
   const double size = units.strength / units.length, span = q.rangeMax - q.rangeMin;
   const std::size_t law =
       model.addLaw(CoordinateLimitForce{lawName(at, "limit"), at.coordinate.name});
-  const auto number = [&](int component) {
-    return model.number(LimitForceTarget{law, component}, 0);
+  using Quantity = LimitForceTarget::Quantity;
+  const auto number = [&](Quantity quantity) {
+    return model.number(LimitForceTarget{law, quantity}, 0);
   };
   const std::size_t K = model.add(
       amplitude(model.idAt(at, "limit.stiffness"), units.stiffness(), 0, 100 * size, 10 * size),
-      {Meaning::Kind::shift, {{number(1)}, {number(3)}}});
+      {Meaning::Kind::shift,
+       {{number(Quantity::upperStiffness)}, {number(Quantity::lowerStiffness)}}});
   // tissue leaves the middle fifth of the range free: else this is a stiffness that grows
   const double upperAt = q.rangeMax - 0.2 * span, lowerAt = q.rangeMin + 0.2 * span,
                free = 0.1 * span;
   const std::size_t upper = model.add(shape(model.idAt(at, "limit.upper"), units.position, upperAt,
                                             at.middle() + free, q.rangeMax, 0.15 * span),
-                                      {Meaning::Kind::shift, {{number(0)}}});
+                                      {Meaning::Kind::shift, {{number(Quantity::upperLimit)}}});
   const std::size_t lower = model.add(shape(model.idAt(at, "limit.lower"), units.position, lowerAt,
                                             q.rangeMin, at.middle() - free, 0.15 * span),
-                                      {Meaning::Kind::shift, {{number(2)}}});
-  const std::size_t transition = model.add(shape(model.idAt(at, "limit.transition"), units.position,
-                                                 0.2 * span, 0.05 * span, span, 0.1 * span),
-                                           {Meaning::Kind::shift, {{number(5)}}});
+                                      {Meaning::Kind::shift, {{number(Quantity::lowerLimit)}}});
+  const std::size_t transition =
+      model.add(shape(model.idAt(at, "limit.transition"), units.position, 0.2 * span, 0.05 * span,
+                      span, 0.1 * span),
+                {Meaning::Kind::shift, {{number(Quantity::transition)}}});
   model.lawFollows({K, upper, lower, transition});
   std::vector<std::vector<double>> starts;
   for (const double inward : {0.2, 0.3, 0.1}) {

@@ -50,10 +50,12 @@ void addBeyond(EncompassingModel& model, std::size_t quantity, double sd, std::s
 void addNuisances(EncompassingModel& model) {
   for (const MuscleQuantityRule& rule : rules) {
     for (const SystemMuscle& muscle : model.system().muscles()) {
+      const std::string parameter = fmt::format("{}.{}", muscle.name, rule.parameter);
+      Meaning meaning{Meaning::Kind::scale, model.numbers(parameter)};
+      meaning.parameter = model.parameters().find(parameter);
       model.addNuisance(
           model.add(factor(nuisanceName(muscle.name, rule), rule.lower, rule.upper, rule.tolerance),
-                    {Meaning::Kind::scale,
-                     model.numbers(fmt::format("{}.{}", muscle.name, rule.parameter))}));
+                    std::move(meaning)));
     }
   }
   if (!model.movedBodies().empty()) {
@@ -154,7 +156,7 @@ void addTendonCompliance(EncompassingModel& model) {
 void addWrapErrors(EncompassingModel& model) {
   for (const ModelParameter& parameter : model.parameters().parameters()) {
     const auto* wrap = std::get_if<WrapTarget>(&parameter.targets.front());
-    if (!wrap || wrap->component != 0) continue;
+    if (!wrap || wrap->quantity != WrapTarget::Quantity::radius) continue;
     const std::string& name = model.base().wrapObjects[wrap->wrap].name;
     const double lower = std::max(-0.5 * parameter.value, parameter.lower - parameter.value);
     const double upper = std::min(parameter.value, parameter.upper - parameter.value);

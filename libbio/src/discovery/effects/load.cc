@@ -26,14 +26,18 @@ Vector3d horizontal(const EncompassingModel& model) {
 }  // namespace
 
 void addExperimentalConditions(EncompassingModel& model) {
+  ConditionQuantities conditions;
   if (!model.movedBodies().empty()) {
-    model.add(amplitude("known.mass", "kg", 0, 100, 1),
-              {Meaning::Kind::shift, model.numbers(model.movedBodies().back() + ".mass")});
+    conditions.massInHand =
+        model.add(amplitude("known.mass", "kg", 0, 100, 1),
+                  {Meaning::Kind::shift, model.numbers(model.movedBodies().back() + ".mass")});
   }
   if (!horizontal(model).isZero()) {
-    model.add(amplitude("known.turn", "rad", -std::numbers::pi, std::numbers::pi, 1),
-              {Meaning::Kind::tilt, {}});
+    conditions.armTurn =
+        model.add(amplitude("known.turn", "rad", -std::numbers::pi, std::numbers::pi, 1),
+                  {Meaning::Kind::tilt, {}});
   }
+  model.setConditions(conditions);
 }
 
 void addPayload(EncompassingModel& model) {
@@ -82,6 +86,7 @@ void addHandForce(EncompassingModel& model) {
     if (std::abs(arm(q) - A * std::cos(q) - B * std::sin(q)) > 1e-9) return;
   }
   const double sign = A < 0 ? -1 : 1;
+  constexpr std::size_t turn = 1;  // place of t in the constants
   const auto force =
       addExpression(model, model.coordinates().front(),
                     {"handforce",
@@ -92,7 +97,8 @@ void addHandForce(EncompassingModel& model) {
                      {amplitude("handforce.force", "N", -30, 30, 3)},
                      {{0.5}},
                      {"tilt"}});
-  if (force) model.extend(model.find("known.turn"), {model.number(ExpressionTarget{*force, 1}, 0)});
+  if (force)
+    model.extend(*model.conditions().armTurn, {model.number(ExpressionTarget{*force, turn}, 0)});
 }
 
 }  // namespace bio::discover

@@ -10,7 +10,7 @@ namespace bio::discover {
 
 using info::discover::EffectKind;
 
-using Of = TimedForce::Of;
+using Kind = TimedForce::Kind;
 
 namespace {
 
@@ -33,7 +33,7 @@ void addTimedTorques(EncompassingModel& model, const MovingCoordinate& at) {
   const auto add = [&](const char* id, bool ends, const std::string& name,
                        const std::string& sentence) {
     const TimedForce force =
-        withQuantities(model, model.idAt(at, id), units.word, {Of::force, ends, which, 0, 0},
+        withQuantities(model, model.idAt(at, id), units.word, {Kind::force, ends, which, 0, 0},
                        amplitude("", units.force, -10 * most, 10 * most, 1 * most));
     model.add(candidateAt(model, at, id, name, sentence, {force.amplitude, force.time},
                           {{0.3 * most, 1.0}}));
@@ -51,7 +51,7 @@ void addTimedMasses(EncompassingModel& model) {
   const std::string subject = hand == "the hand" ? "The hand" : hand;
   const auto add = [&](const char* id, bool ends, const std::string& name,
                        const std::string& sentence) {
-    const TimedForce force = withQuantities(model, id, "mass", {Of::mass, ends, 0, 0, 0},
+    const TimedForce force = withQuantities(model, id, "mass", {Kind::mass, ends, 0, 0, 0},
                                             amplitude("", "kg", 0, 5, 0.7));
     model.add(candidate(model, id, name, sentence, EffectKind::structure,
                         {force.amplitude, force.time}, {{0.3, 1.0}}));

@@ -48,7 +48,7 @@ struct Options {
   double remainder = 3;       ///< largest log Bayes factor [nats] of a further disturbance with a
                               ///< Cause, or of a non-parametric force, that is tolerated
   double classWidth = 4.6;    ///< [nats] alternatives at most so far behind stay in the class
-  double surprise = 3;        ///< prior standard deviations beyond which a parameter is in error
+  double largestPriorZ = 3;   ///< prior standard deviations beyond which a parameter is in error
   double level = 0.001;       ///< significance level of every test of adequacy
   double falseDiscoveries = 0.05;  ///< false discovery rate of the score map
   int maxEffects = 3;
@@ -79,7 +79,7 @@ struct Estimate {
   std::size_t quantity = 0;  ///< index into DiscoveryProblem::quantities()
   double value = 0;
   double sd = 0;         ///< posterior standard deviation, in the unit of the quantity
-  double surprise = 0;   ///< (value − nominal)/prior standard deviation; of the logarithm if the
+  double priorZ = 0;     ///< (value − nominal)/prior standard deviation; of the logarithm if the
                          ///< prior is log-normal
   bool atBound = false;  ///< within 1e-6 of its range of a bound
   /// RMS change of the fitted trials' outputs between its nominal value and this one, linear in its
@@ -130,8 +130,8 @@ struct RacedFormula {
   std::string text;            ///< with values, e.g. "-1.48·(q³ - 3.6·q²)"
   std::vector<double> values;  ///< c, then r_2, … (FormulaTerm)
   std::vector<double> sds;
-  Adequacy after;   ///< of the innovations, with the formula
-  ExcessError gap;  ///< on the fitted trials
+  Adequacy after;      ///< of the innovations, with the formula
+  ExcessError excess;  ///< on the fitted trials
   std::optional<ExcessError> heldOut;
   /// If it wins: the data with the formula as a candidate, and the verdict with it.
   std::shared_ptr<const DiscoveryProblem> data;
@@ -179,7 +179,7 @@ struct Verdict {
   /// of the held-out trials are improbably large (Options::farOff), or these trials show the
   /// effects only with parameters of their own (Replication).
   bool vetoed = false;
-  bool proxy = false;  ///< finding unknown: `effects` is only a proxy for the missing effect
+  bool surrogate = false;  ///< finding unknown: `effects` is only a proxy for the missing effect
   /// Nothing was found without the held-out trials, although their errors were too large. All
   /// trials were therefore fitted, and none is left for validation (Options::secondLook).
   bool heldOutFitted = false;
@@ -203,7 +203,7 @@ struct Verdict {
   /// alternative in place of the effect that it cannot be distinguished from.
   std::vector<Fit> rivals;
   std::vector<Detectable> detectability;
-  ExcessError gap;  ///< on the trials that were fitted
+  ExcessError excess;  ///< on the trials that were fitted
   std::optional<ExcessError> heldOut;
   std::optional<HeldOutAdequacy> heldOutBefore, heldOutAfter;
   /// If effects were chosen, but the held-out trials are not as expected with them.
@@ -220,7 +220,7 @@ struct Verdict {
 /// Whether the effects of a verdict may be built into the model. Proxies may not: they would hide
 /// the unknown effect.
 inline bool mayBeAdded(const Verdict& verdict) {
-  return verdict.reached == Stage::finished && !verdict.proxy && !verdict.effects.empty() &&
+  return verdict.reached == Stage::finished && !verdict.surrogate && !verdict.effects.empty() &&
          verdict.finding != Finding::numerical;
 }
 

@@ -71,9 +71,9 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
   if (judgement.chosen.empty() || leader == nullptr) {
     const bool fits = judgement.before.adequate() && !judgement.strangeBefore &&
                       judgement.latentBefore <= options.latentTolerance;
-    decision.finding = !fits                                   ? Finding::unknown
-                       : judgement.surprise > options.surprise ? Finding::parameter
-                                                               : Finding::none;
+    decision.finding = !fits                                      ? Finding::unknown
+                       : judgement.priorZ > options.largestPriorZ ? Finding::parameter
+                                                                  : Finding::none;
     return decision;
   }
   bool alone = true, parameters = true, stretched = false;
@@ -94,7 +94,7 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
       judgement.latentAfter > options.latentTolerance || (contradicted && !judgement.replicated) ||
       stretched || judgement.nonparametricWins || explainsNothing) {
     decision.finding = Finding::unknown;
-    decision.proxy = true;
+    decision.surrogate = true;
     decision.probability = 0;
     for (NamedEffect& effect : decision.effects) effect.probability = std::nan("");
     return decision;

@@ -43,14 +43,14 @@ double rangeOf(const DiscoveryProblem& data, const std::vector<int>& trials,
   return widest;
 }
 
-void explainExcess(ExcessError& gap) {
-  const double floor = gap.floor * gap.floor, after = gap.after * gap.after - floor;
+void explainExcess(ExcessError& excess) {
+  const double floor = excess.floor * excess.floor, after = excess.after * excess.after - floor;
   const auto closed = [&](double before) -> std::optional<double> {
     if (before * before < 1.2 * floor) return std::nullopt;
     return 1 - after / (before * before - floor);
   };
-  gap.closedFromCalibrated = closed(gap.calibrated);
-  gap.closedFromNominal = closed(gap.nominal);
+  excess.closedFromCalibrated = closed(excess.calibrated);
+  excess.closedFromNominal = closed(excess.nominal);
 }
 
 }  // namespace info::discover

@@ -67,9 +67,9 @@ void Disturbances::addHats(double width, std::size_t axis) {
       score.trial = likelihood_.trials()[t];
       score.from = middle - half;
       score.to = middle + half;
-      add(score, [&](std::size_t of) {
-        VectorXd f = noForce(of);
-        if (of == t)
+      add(score, [&](std::size_t trial) {
+        VectorXd f = noForce(trial);
+        if (trial == t)
           for (Index i = 0; i < f.size(); ++i)
             f[i] = std::max(0.0, 1 - std::abs(nodes[static_cast<std::size_t>(i)] - middle) / half);
         return f;
@@ -107,11 +107,11 @@ void Disturbances::addCells(int cellsQ, int cellsQDot, std::size_t axis) {
       score.upperQ = score.lowerQ + widthQ;
       score.lowerQDot = range.lowestQDot + b * widthQDot;
       score.upperQDot = score.lowerQDot + widthQDot;
-      add(score, [&](std::size_t of) {
-        VectorXd f = noForce(of);
+      add(score, [&](std::size_t trial) {
+        VectorXd f = noForce(trial);
         for (Index i = 0; i < f.size(); ++i)
-          f[i] = q[of][i] >= score.lowerQ && q[of][i] < score.upperQ &&
-                         qDot[of][i] >= score.lowerQDot && qDot[of][i] < score.upperQDot
+          f[i] = q[trial][i] >= score.lowerQ && q[trial][i] < score.upperQ &&
+                         qDot[trial][i] >= score.lowerQDot && qDot[trial][i] < score.upperQDot
                      ? 1
                      : 0;
         return f;
@@ -126,10 +126,10 @@ void Disturbances::addInputs(std::size_t axis) {
     Score score;
     score.axis = axis;
     score.input = names[j];
-    add(score, [&](std::size_t of) {
-      return VectorXd(states_.inputs[of]
+    add(score, [&](std::size_t trial) {
+      return VectorXd(states_.inputs[trial]
                           .col(static_cast<Index>(j))
-                          .segment(states_.begin(of, axis), states_.count(of)));
+                          .segment(states_.begin(trial, axis), states_.count(trial)));
     });
   }
 }

@@ -89,14 +89,15 @@ std::optional<PositionBreak> breakOf(const DiscoveryProblem& data, const Options
   Search search(data, trials, options, sds, [](const std::string&) {});
   const auto tracked = search.tracked({}, nominalValues(data));
   if (!tracked) return {};
-  const NodeStates states = statesAtNodes(*tracked->of, tracked->fit);
+  const NodeStates states = statesAtNodes(*tracked->likelihood, tracked->fit);
   PositionBreak best;
   for (std::size_t axis = 0; axis < states.numAxes; ++axis) {
     const std::vector<VectorXd> positions = states.positions(axis);
     std::vector<Visit> nodes;
     double squares = 0;
     for (std::size_t t = 0; t < trials.size(); ++t) {
-      const VectorXd force = onAxis(tracked->of->force(t, tracked->fit), axis, states.numAxes);
+      const VectorXd force =
+          onAxis(tracked->likelihood->force(t, tracked->fit), axis, states.numAxes);
       squares += force.squaredNorm();
       for (Index k = 1; k < force.size(); ++k) nodes.push_back({positions[t][k], force[k]});
     }

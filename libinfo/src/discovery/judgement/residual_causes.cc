@@ -236,14 +236,14 @@ Cause ResidualEvidence::strongest() const {
 
 ResidualEvidence residualEvidence(const Likelihood& likelihood, const Fit& fit) {
   const NodeStates states = statesAtNodes(likelihood, fit);
-  const auto of = [&](const std::vector<MatrixXd>& disturbances) {
+  const auto natsOf = [&](const std::vector<MatrixXd>& disturbances) {
     return evidenceOf(likelihood, fit, states, disturbances);
   };
-  const auto ofForces = [&](const auto& forcesOn) { return of(outputsOf(states, forcesOn)); };
+  const auto ofForces = [&](const auto& forcesOn) { return natsOf(outputsOf(states, forcesOn)); };
   return {{ofForces([&](std::size_t axis) { return fieldOfState(states, axis); }),
            ofForces([&](std::size_t axis) { return pastInputs(likelihood, states, axis); }),
            ofForces([&](std::size_t axis) { return accelerations(likelihood, fit, states, axis); }),
-           of(sensorErrors(likelihood, fit, states)),
+           natsOf(sensorErrors(likelihood, fit, states)),
            ofForces([&](std::size_t axis) { return moments(likelihood, fit, states, axis); })}};
 }
 

@@ -15,7 +15,7 @@ std::vector<FittedNumber> fittedNumbers(const DiscoveryProblem& data, const Verd
       const Quantity& quantity = data.quantities()[estimate.quantity];
       const double prior = quantity.sd * (quantity.logarithmic ? quantity.nominal : 1);
       numbers.push_back({estimate.quantity, quantity.name, quantity.unit, quantity.nominal,
-                         estimate.value, estimate.sd, prior, estimate.surprise});
+                         estimate.value, estimate.sd, prior, estimate.priorZ});
     }
   };
   for (const NamedEffect& effect : verdict.effects) add(effect.estimates);

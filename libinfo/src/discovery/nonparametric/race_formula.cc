@@ -67,7 +67,7 @@ std::optional<RacedFormula> raceFormula(const Search& search, const Unknown& unk
   formula.wins = raced.finding == Finding::named && !raced.vetoed && raced.effects.size() == 1 &&
                  isFormula(raced.effects[0].candidate);
   formula.after = raced.after;
-  formula.gap = raced.gap;
+  formula.excess = raced.excess;
   formula.heldOut = raced.heldOut;
   if (formula.wins) {
     formula.verdict = std::make_shared<const Verdict>(raced);

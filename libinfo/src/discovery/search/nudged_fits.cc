@@ -17,29 +17,30 @@ namespace {
 // Fits that start with nudging: the stage at which their evidence is compared, by how many nats one
 // may be behind the best there, and how many are fitted to convergence.
 constexpr std::size_t kHalfWay = 3;
-constexpr double kLedBehind = 10;
-constexpr std::size_t kLedFits = 3;
+constexpr double kNudgedBehind = 10;
+constexpr std::size_t kNudgedFits = 3;
 // predicted gain [nats] of one step of a nudged model
 constexpr double kExplainsMuch = 20;
 
 }  // namespace
 
-std::optional<VectorXd> Search::ledFrom(const Effects& effects, const VectorXd& start) {
+std::optional<VectorXd> Search::nudgedFrom(const Effects& effects, const VectorXd& start) {
   const std::size_t stages = nudgedLikelihoods_.size();
-  Led led{start};
-  if (stages == 0 || !lead(effects, 0, stages, led)) return {};
-  return std::move(led.values);
+  NudgedFit nudged{start};
+  if (stages == 0 || !fitNudged(effects, 0, stages, nudged)) return {};
+  return std::move(nudged.values);
 }
 
-bool Search::lead(const Effects& effects, std::size_t first, std::size_t end, Led& led) {
+bool Search::fitNudged(const Effects& effects, std::size_t first, std::size_t end,
+                       NudgedFit& nudged) {
   const Hypothesis hypothesis = makeHypothesis(data_, effects, trials_);
   for (std::size_t i = first; i < end; ++i) {
     const Noise noise{output_.scaled(nudgeStages[i].spread), 0, options_.latentTime};
-    const auto fit = nudgedLikelihoods_[i].tryFit(hypothesis, noise, led.values, {}, {6, 0.1});
+    const auto fit = nudgedLikelihoods_[i].tryFit(hypothesis, noise, nudged.values, {}, {6, 0.1});
     ++fits_;
     if (!fit) return false;
-    led.values = fit->values;
-    led.evidence = fit->logEvidence;
+    nudged.values = fit->values;
+    nudged.evidence = fit->logEvidence;
   }
   return true;
 }
@@ -63,10 +64,10 @@ std::optional<Search::Tracked> Search::tracked(const Effects& effects, VectorXd 
 
 // All candidates are led half way; of the weakest nudging only those need to come through that are
 // continued without it.
-void Search::raceLed(const Effects& base, const std::vector<std::size_t>& candidates) {
+void Search::raceNudged(const Effects& base, const std::vector<std::size_t>& candidates) {
   const std::size_t stages = nudgedLikelihoods_.size(), half = std::min(kHalfWay + 1, stages);
   if (stages == 0) return;
-  std::vector<std::pair<std::size_t, Led>> all;
+  std::vector<std::pair<std::size_t, NudgedFit>> all;
   const VectorXd nominal = nominalValues(data_);
   for (const std::size_t c : candidates) {
     const Effects effects = with(base, c);
@@ -78,24 +79,26 @@ void Search::raceLed(const Effects& base, const std::vector<std::size_t>& candid
         start[static_cast<Index>(q)] = at(base).fit.values[static_cast<Index>(q)];
     Fit near = at(base).fit;
     near.values = std::move(start);
-    Led led{bestStart(base, c, near, 0)};
-    if (lead(effects, 0, half, led)) all.emplace_back(c, std::move(led));
+    NudgedFit nudged{bestStart(base, c, near, 0)};
+    if (fitNudged(effects, 0, half, nudged)) all.emplace_back(c, std::move(nudged));
   }
   std::sort(all.begin(), all.end(),
             [](const auto& a, const auto& b) { return a.second.evidence > b.second.evidence; });
-  std::vector<double> led;  // evidence half way of those that came through
+  std::vector<double> nudged;  // evidence half way of those that came through
   for (auto& [c, one] : all) {
     const double evidence = one.evidence;
-    if (led.size() == kLedFits || (!led.empty() && evidence < led.front() - kLedBehind)) break;
+    if (nudged.size() == kNudgedFits ||
+        (!nudged.empty() && evidence < nudged.front() - kNudgedBehind))
+      break;
     const Effects effects = with(base, c);
     report_(describe(data_, effects));
-    if (!lead(effects, half, stages, one)) continue;
-    led.push_back(evidence);
-    continueLed(effects, one.values);
+    if (!fitNudged(effects, half, stages, one)) continue;
+    nudged.push_back(evidence);
+    continueNudged(effects, one.values);
   }
 }
 
-void Search::continueLed(const Effects& effects, const VectorXd& start) {
+void Search::continueNudged(const Effects& effects, const VectorXd& start) {
   const Noise still{output_, 0, options_.latentTime};
   const auto fit =
       likelihood_->tryFit(makeHypothesis(data_, effects, trials_), still, start, {}, {kShort, 0.1});
@@ -142,9 +145,9 @@ std::vector<Screened> Search::screenHeld(const Effects& effects) {
   if (nudgedLikelihoods_.size() <= kHeldStage) return {};
   const Likelihood& held = nudgedLikelihoods_[kHeldStage];
   const Noise noise{output_.scaled(nudgeStages[kHeldStage].spread), 0, options_.latentTime};
-  const auto fitted = [&](const Effects& of, const VectorXd& from, int iterations) {
+  const auto fitted = [&](const Effects& tried, const VectorXd& from, int iterations) {
     ++fits_;
-    return held.tryFit(makeHypothesis(data_, of, trials_), noise, from, {}, {iterations, 0.1});
+    return held.tryFit(makeHypothesis(data_, tried, trials_), noise, from, {}, {iterations, 0.1});
   };
   VectorXd start = nominalValues(data_);
   for (const std::size_t e : effects)

@@ -29,7 +29,7 @@ void Search::raceOne(const Effects& base, std::size_t candidate) {
 void Search::race(const Effects& base, const std::vector<std::size_t>& candidates) {
   const std::size_t known = entries_.size();
   for (const std::size_t c : candidates) raceOne(base, c);
-  raceLed(base, candidates);
+  raceNudged(base, candidates);
   const bool news = entries_.size() > known;
   if (!news) return;
   // cross-starts: all hypotheses that are not far behind, and the next three in any case, are

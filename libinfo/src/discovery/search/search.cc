@@ -130,8 +130,8 @@ void Search::calibrate() {
   for (const double size : {kWidest, kRaceSize})
     if (!at({}).works() || at({}).fit.noise.latent > kFirstSize)
       improve({}, nominalValues(data_), size);
-  if (const auto led = tracked({}, nominalValues(data_)))
-    improve({}, led->fit.values, kFirstSize, &led->fit);
+  if (const auto nudged = tracked({}, nominalValues(data_)))
+    improve({}, nudged->fit.values, kFirstSize, &nudged->fit);
   mustWork();
   // evaluate the scale of the latent force along the measured motion, then repeat from both ends
   const Fit first = at({}).fit;
@@ -149,8 +149,8 @@ void Search::calibrate() {
     improve({}, drawn(start), kSmallSize, nullptr, bestScore() - kGivenUp);
   }
   report_("base model");
-  if (const auto led = ledFrom({}, nominalValues(data_)))
-    improve({}, *led, kSmallSize, nullptr, bestScore() - kGivenUp);
+  if (const auto nudged = nudgedFrom({}, nominalValues(data_)))
+    improve({}, *nudged, kSmallSize, nullptr, bestScore() - kGivenUp);
 }
 
 // The nominal values, followed by samples of the prior.

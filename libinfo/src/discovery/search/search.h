@@ -91,7 +91,7 @@ class Search {
   const Fit& simulation(const Effects& effects);
   struct Tracked {
     Fit fit;
-    const Likelihood* of;  ///< of the nudged model
+    const Likelihood* likelihood;  ///< of the nudged model
   };
   /// A fit with latent force of a nudged model, the nudging reduced from stage to stage while the
   /// latent force takes its place: the simulation stays near the data from the beginning, also past
@@ -141,21 +141,21 @@ class Search {
                const Fit* near = nullptr, double hopeless = -HUGE_VAL);
   Eigen::VectorXd drawn(std::uint64_t start) const;
   /// A fit without latent force by nudging that is gradually reduced.
-  struct Led {
+  struct NudgedFit {
     Eigen::VectorXd values;  ///< where it ends
     double evidence = 0;     ///< of its last stage
   };
-  /// Fits with the nudging of stages first to end − 1, from led.values on. False if the model
+  /// Fits with the nudging of stages first to end − 1, from nudged.values on. False if the model
   /// cannot be simulated so.
-  bool lead(const Effects& effects, std::size_t first, std::size_t end, Led& led);
-  /// Where all stages lead. Empty if the model cannot be simulated so, or if
+  bool fitNudged(const Effects& effects, std::size_t first, std::size_t end, NudgedFit& nudged);
+  /// Where all stages end. Empty if the model cannot be simulated so, or if
   /// DiscoveryProblem::nudged is not available.
-  std::optional<Eigen::VectorXd> ledFrom(const Effects& effects, const Eigen::VectorXd& start);
+  std::optional<Eigen::VectorXd> nudgedFrom(const Effects& effects, const Eigen::VectorXd& start);
   /// Fits candidates beside `base` from the results of nudged fits that start at the nominal
   /// values, for those close to the best.
-  void raceLed(const Effects& base, const std::vector<std::size_t>& candidates);
-  /// Fits without latent force from where nudged fits led; improve() from there if that is news.
-  void continueLed(const Effects& effects, const Eigen::VectorXd& start);
+  void raceNudged(const Effects& base, const std::vector<std::size_t>& candidates);
+  /// Fits without latent force from where nudged fits end; improve() from there if that is news.
+  void continueNudged(const Effects& effects, const Eigen::VectorXd& start);
   /// One-step gains of all candidates that are not in `effects` at a fit of a likelihood.
   std::vector<Screened> screenAt(const Likelihood& likelihood, const Fit& fit,
                                  const Effects& effects) const;
@@ -177,7 +177,7 @@ class Search {
   std::optional<Likelihood> likelihood_;
   std::vector<std::unique_ptr<DiscoveryProblem>> nudged_;  ///< the strongest first
   std::vector<Likelihood> nudgedLikelihoods_;
-  std::set<Effects> raced_;  ///< by raceLed
+  std::set<Effects> raced_;  ///< by raceNudged
   struct GridStart {
     Eigen::VectorXd values;   ///< of the fit with fixed amplitude
     double gain = -HUGE_VAL;  ///< log Bayes factor [nats] against the base, both nudged

@@ -88,8 +88,8 @@ SteppedVerdict runTwiceIfNeeded(const MakeAttempt& attempt, double step, double 
 std::function<bool(const Progress&)> progressOfAnother(
     std::function<bool(const Progress&)> progress) {
   if (!progress) return {};
-  return [tell = std::move(progress)](const Progress& of) {
-    return tell({of.stage, 0.99 + 0.01 * of.fraction, of.doing});
+  return [tell = std::move(progress)](const Progress& now) {
+    return tell({now.stage, 0.99 + 0.01 * now.fraction, now.doing});
   };
 }
 

@@ -12,7 +12,7 @@ struct Judgement {
   std::vector<std::size_t> chosen;  ///< effects accepted by greedy selection, sorted; may be empty
   Adequacy before, after;           ///< of the base model, and with the chosen effects
   double latentBefore = 0, latentAfter = 0;  ///< σ_d
-  double surprise = 0;                       ///< largest one of the base model's parameters
+  double priorZ = 0;                         ///< largest one of the base model's parameters
   /// errors of held-out trials are larger than expected from the base model, or from the chosen
   /// effects
   bool strangeBefore = false, strangeAfter = false;
@@ -29,12 +29,12 @@ struct Decision {
   Finding finding = Finding::none;
   std::vector<NamedEffect> effects;
   double probability = 0;
-  bool vetoed = false, proxy = false;
+  bool vetoed = false, surrogate = false;
 };
 
 /// The rules, in this order. Adequate means: all tests passed, σ_d within the tolerated scatter of
 /// the inputs, and held-out trials as expected.
-/// - Nothing chosen, base adequate: `parameter` if one differs by more than `surprise` prior
+/// - Nothing chosen, base adequate: `parameter` if one differs by more than `largestPriorZ` prior
 ///   standard deviations, else `none`.
 /// - Nothing chosen, base inadequate: `unknown`.
 /// - Chosen, but the residuals are not white or follow a Cause, the latent force is too large, or

@@ -36,6 +36,6 @@ double rangeOf(const DiscoveryProblem& data, const std::vector<int>& trials,
                const Whitening& noise);
 
 /// Sets `closedFrom…`.
-void explainExcess(ExcessError& gap);
+void explainExcess(ExcessError& excess);
 
 }  // namespace info::discover
