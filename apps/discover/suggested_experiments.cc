@@ -39,7 +39,11 @@ FollowUps followUpsOfModels(const bio::discover::EncompassingModel& model) {
           {{"gain_", "Fmax_", "lopt_", "lslack_", "crosstalk", "saturated_", "offset_"},
            "Record one isolated contraction of each muscle, and one against a load cell at a "
            "fixed angle."},
-          {{"stiffness", "tilt", "limit", "wrap_", "gain", "bias", "Fmax_"},
+          {{"lever_", "payload", "mass", "tilt", "const", "bias", "lag"},
+           "Record the dynamometer moving as in a trial without the limb: what its lever weighs "
+           "and "
+           "its inertia are in that record alone."},
+          {{"stiffness", "cubic", "tilt", "limit", "wrap_", "gain", "bias", "Fmax_"},
            "Move the relaxed limb slowly through its whole range with a dynamometer (column " +
                loadColumn + "): this shows the passive effects without the muscles."},
           {{"missing_", "Fmax_", "gain_"},

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Blind sets for discover on two free joints, and on a dynamometer that reads a torque.
 
-    python3 validation/discovery/joints_and_torque.py [--build build/program] [--sets 3] [--seed S] [--world joints|torque] [--seconds 4.5] FOLDER
+    python3 validation/discovery/joints_and_torque.py [--build build/program] [--sets 3] [--seed S] [--world joints|torque] [--kind ID] [--seconds 4.5] FOLDER
 
 Each set has a training and a held-out trial of 4.5 s (--seconds) at 100 Hz, simulated by `replay` of the shipped elbow with one effect hidden in it, drawn at
-random: damping of the elbow (or of the shoulder, where that is free), a mass in the hand, an electromechanical delay, or nothing. "joints": shoulder and
-elbow free, both angles measured with 0.3° of noise. "torque": the elbow turned by 40° to and fro, its moment measured with 0.2 N m of noise.
+random: damping of the elbow (or of the shoulder, where that is free), a mass in the hand, an electromechanical delay, or nothing; of "torque" also weight
+or inertia of the dynamometer's lever, gain, bias or lag of its sensor (--kind: one of them). "joints": shoulder and elbow free, both angles measured with
+0.3° of noise. "torque": the elbow turned by 40° to and fro, its moment measured with 0.2 N m of noise.
 discover sees the files only; the truths are written to FOLDER/truths.json and read after all verdicts are there. Prints one line per set and a count.
 Without --seed the sets are new ones. Exit status 1: a wrong name.
 """
@@ -22,7 +23,9 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 MODEL = TOP / "models/elbow8.osim"
 WORLDS = ("joints", "torque")
 # what discover may call it: the effect, or a class that holds it
-NAMES = {"payload": {"payload", "mass"}, "delay": {"delay", "clock"}}
+NAMES = {"payload": {"payload", "mass"}, "delay": {"delay", "clock"}, "bias": {"bias", "const"}}
+# of the recorded moment: sizes from … to …
+MACHINE = {"lever_weight": (1.5, 5), "lever_inertia": (0.08, 0.3), "gain": (0.15, 0.3), "bias": (1, 3), "lag": (0.03, 0.08)}
 
 
 def table(path):
@@ -59,12 +62,17 @@ def loaded(text, mass):
     return text[:begin] + repr(float(text[begin:end]) + mass) + text[end:]
 
 
-def hide(world, draw, text):
+def kinds(world):
+    return ["nothing", "payload", "elbow_flexion.visc", "delay"] + (["shoulder_elv.visc"] if world == "joints" else list(MACHINE))
+
+
+def hide(world, draw, text, asked):
     """An effect by its id, its size, the model with it and the delay of the muscles [s]."""
-    kinds = ["nothing", "payload", "elbow_flexion.visc", "delay"] + (["shoulder_elv.visc"] if world == "joints" else [])
-    kind = draw.choice(kinds)
+    kind = asked or draw.choice(kinds(world))
     if kind == "nothing":
         return kind, 0.0, text, 0.0
+    if kind in MACHINE:
+        return kind, draw.uniform(*MACHINE[kind]), text, 0.0
     if kind == "payload":
         mass = draw.uniform(0.25, 0.9)
         return kind, mass, loaded(text, mass), 0.0
@@ -75,11 +83,29 @@ def hide(world, draw, text):
     return kind, viscosity, damped(text, kind.split(".")[0], viscosity), 0.0
 
 
+def as_recorded(kind, size, moment, angle, bend):
+    """The moment [N m] as the dynamometer of a kind records it: a lever that is level at 20°, an acceleration bend [rad/s^2], rows of 0.01 s."""
+    if kind == "lever_weight":
+        return [m + size * math.cos(math.radians(q - 20)) for m, q in zip(moment, angle)]
+    if kind == "lever_inertia":
+        return [m - size * b for m, b in zip(moment, bend)]
+    if kind == "gain":
+        return [(1 + size) * m for m in moment]
+    if kind == "bias":
+        return [m + size for m in moment]
+    if kind == "lag":
+        shown = moment[:1]
+        for m in moment[1:]:
+            shown.append(m + (shown[-1] - m) * math.exp(-0.01 / size))
+        return shown
+    return moment
+
+
 def options(world):
     return ["--prescribe", "elbow_flexion"] if world == "torque" else ["--coordinate", "elbow_flexion", "--coordinate", "shoulder_elv"]
 
 
-def make_trial(program, folder, name, world, model, delay, source, frequency, phase, seconds, draw):
+def make_trial(program, folder, name, world, model, hidden, delay, source, frequency, phase, seconds, draw):
     columns, recorded = table(TOP / f"emg_data/{source}.sto")
     muscles, time = columns[1:9], [0.01 * k for k in range(round(100 * seconds) + 1)]
     excitations = [interpolated(time, recorded[0], recorded[k]) for k in range(1, 9)]
@@ -96,8 +122,9 @@ def make_trial(program, folder, name, world, model, delay, source, frequency, ph
         sys.exit(ran.stderr)
     if world == "torque":
         columns, simulated = table(folder / "replay/forces.sto")
-        reaction = interpolated(time, simulated[0], simulated[columns.index("elbow_flexion.reaction")])
-        shown, names = [angle, [draw.gauss(-r, 0.2) for r in reaction]], ["elbow_flexion_deg", "elbow_flexion.moment"]
+        moment = [-r for r in interpolated(time, simulated[0], simulated[columns.index("elbow_flexion.reaction")])]
+        bend = [math.radians(70 - q) * (2 * math.pi * frequency) ** 2 for q in angle]
+        shown, names = [angle, [draw.gauss(m, 0.2) for m in as_recorded(*hidden, moment, angle, bend)]], ["elbow_flexion_deg", "elbow_flexion.moment"]
     else:
         columns, simulated = table(folder / "replay/states.sto")
         names, shown = ["elbow_flexion_deg", "shoulder_elv_deg"], []
@@ -125,20 +152,24 @@ def main():
     parser.add_argument("--sets", type=int, default=3)
     parser.add_argument("--seed", type=int)
     parser.add_argument("--world", choices=WORLDS)
+    parser.add_argument("--kind", choices=sorted({*kinds("joints"), *kinds("torque")}))
     parser.add_argument("--seconds", type=float, default=4.5)
     asked = parser.parse_args()
+    worlds = [asked.world] if asked.world else [world for world in WORLDS if not asked.kind or asked.kind in kinds(world)]
+    if asked.kind and not all(asked.kind in kinds(world) for world in worlds):
+        parser.error(f"--kind {asked.kind}: --world must not be {asked.world}")
     program = (TOP / asked.build / "apps/fisherhill").resolve()
     draw = random.Random(asked.seed)
     asked.folder.mkdir(parents=True, exist_ok=True)
     truths, counts = {}, {}
     for number in range(asked.sets):
-        for world in [asked.world] if asked.world else WORLDS:
+        for world in worlds:
             name = f"{world}{number}"
-            kind, size, text, delay = hide(world, draw, MODEL.read_text())
+            kind, size, text, delay = hide(world, draw, MODEL.read_text(), asked.kind)
             truths[name] = (kind, size)
             (asked.folder / "hidden.osim").write_text(text)
             for source, frequency, phase in (("curl_slow", 0.25, 0.0), ("curl_fast", 0.4, 1.0)):
-                make_trial(program, asked.folder, name, world, "hidden.osim", delay, source, frequency, phase, asked.seconds, draw)
+                make_trial(program, asked.folder, name, world, "hidden.osim", truths[name], delay, source, frequency, phase, asked.seconds, draw)
     (asked.folder / "truths.json").write_text(json.dumps(truths, indent=1))
     (asked.folder / "hidden.osim").unlink()
     for name in truths:

@@ -65,6 +65,7 @@ Augmented augmentedModel(const EncompassingModel& encompassing, const Eigen::Vec
   dropAbsent(model.springForces, encompassing.base().springForces.size());
   dropAbsent(model.limitForces, encompassing.base().limitForces.size());
   dropAbsent(model.expressionForces, encompassing.base().expressionForces.size());
+  dropAbsent(model.elasticPaths, encompassing.base().elasticPaths.size());
   for (const auto& [muscle, synergists] : encompassing.synergists()) {
     const auto works = [&, name = &muscle](const Muscle& added) {
       return added.name == *name && added.enabled;

@@ -110,6 +110,12 @@ std::size_t EncompassingModel::addLaw(ExpressionBasedCoordinateForce law) {
   laws_.push_back({Law::List::expression, encompassing_.expressionForces.size() - 1, {}});
   return laws_.back().index;
 }
+std::size_t EncompassingModel::addLaw(ElasticPath law) {
+  law.enabled = false;
+  encompassing_.elasticPaths.push_back(std::move(law));
+  laws_.push_back({Law::List::elasticPath, encompassing_.elasticPaths.size() - 1, {}});
+  return laws_.back().index;
+}
 std::size_t EncompassingModel::addMuscle(std::size_t muscle, std::vector<std::string> synergists) {
   SchutteParameters& parameters = *encompassing_.muscles.at(muscle).schutte;
   synergists_[base_.muscles[muscle].name] = std::move(synergists);
@@ -220,6 +226,9 @@ ParameterCatalogue::Setting EncompassingModel::settingAt(
         break;
       case Law::List::expression:
         setting.model.expressionForces[law.index].enabled = on;
+        break;
+      case Law::List::elasticPath:
+        setting.model.elasticPaths[law.index].enabled = on;
         break;
       case Law::List::muscle:
         setting.model.muscles[law.index].enabled = on;

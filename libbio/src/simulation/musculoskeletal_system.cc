@@ -119,7 +119,8 @@ void MusculoskeletalSystem::addElasticPaths(const Model& model, const SystemOpti
       for (const SystemElasticPath& one : like->elasticPaths_) {
         if (one.name == elastic.name) path = one.path;
       }
-    } else {
+    }
+    if (!like || (!path && elastic.path.function)) {
       try {
         path.emplace(model, skeleton_, carrier, options.wrapAsCylinder, postures.of(carrier));
       } catch (const UnsupportedWrap& e) {

@@ -47,7 +47,7 @@ TEST(Effects, AreAllThereWithTheirWords) {
                          "wrap_BIC_BRD", "bias",      "gain",       "clock",
                          "clock_rate",   "lag",       "drift",      "swap_BRA_BRD",
                          "torque_from",  "mass_from", "mass_until", "torque_until",
-                         "limit_exp"}) {
+                         "limit_exp",    "cubic"}) {
     EXPECT_TRUE(ids.contains(id)) << id;
   }
   // what is equivalent to something is equivalent to something there is
@@ -270,6 +270,7 @@ TEST(Effects, WithAPlaceInOpenSimUseItsOwnComponents) {
   EXPECT_EQ(loaded, expected);
   EXPECT_EQ(added("coulomb").expressionForces.at(0).expression,
             "-0.20000000000000001*tanh(qdot/0.05)");
+  EXPECT_EQ(added("cubic").expressionForces.at(0).expression, "-0.5*(q-1.134464015)^3");
 }
 
 /// Names of the elements in a document.

@@ -124,11 +124,11 @@ TEST(Discover, UsesWhatComesBeforeAPositionAtWhichTheModelFails) {
   request.search.maxEffects = 1;
   request.search.latentTolerance = 0.02;  // the torque is no noise of the inputs
   // what could imitate such a torque, and what takes time
-  request.problem.without = {"visc",      "coulomb",   "stribeck",  "drag",       "powerdamp",
-                             "stiffness", "limit",     "limit_exp", "payload",    "tilt",
-                             "const",     "handforce", "spring",    "timed",      "fatigue",
-                             "wraps",     "muscles",   "crosstalk", "electrodes", "baselines",
-                             "mass",      "tau",       "tendon"};
+  request.problem.without = {"visc",      "coulomb", "stribeck",  "drag",      "powerdamp",
+                             "stiffness", "cubic",   "limit",     "limit_exp", "payload",
+                             "tilt",      "const",   "handforce", "spring",    "timed",
+                             "fatigue",   "wraps",   "muscles",   "crosstalk", "electrodes",
+                             "baselines", "mass",    "tau",       "tendon"};
   const DiscoveryResult result = discover(request);
   const auto& verdict = result.found.verdict;
   EXPECT_EQ(verdict.finding, info::discover::Finding::named) << verdict.sentence;

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bio/discovery/add_effects.h"
 #include "bio/discovery/musculoskeletal_problem.h"
+#include "bio/opensim/osim_file.h"
 #include "info/discovery/likelihood/hypothesis.h"
 #include "libbio/discovery/effect_cases.h"
 #include "libbio/simulation/arm_of_seven.h"
+#include "support/scratch_folder.h"
 #include "support/throws_saying.h"
 
 // Discovery of several coordinates, and of channels other than a coordinate.
@@ -136,11 +139,13 @@ TEST(SeveralCoordinates, EachHasItsEffectsAndEachChannelItsSensor) {
   EXPECT_EQ(nameOf(sensors[1]), "shoulder_elv");
   EXPECT_EQ(nameOf(sensors[2]), "BRA.fiber_length");
   const auto ids = idsOf(c.data);
-  for (const char* id : {"elbow_flexion.visc", "elbow_flexion.coulomb", "shoulder_elv.coulomb",
-                         "shoulder_elv.torque_from", "payload", "tilt", "Fmax_TRI", "delay",
-                         "elbow_flexion.bias", "shoulder_elv.gain", "BRA.fiber_length.lag"})
+  for (const char* id :
+       {"elbow_flexion.visc", "elbow_flexion.coulomb", "shoulder_elv.coulomb",
+        "shoulder_elv.torque_from", "payload", "tilt", "Fmax_TRI", "delay", "biarticular_BIC",
+        "biarticular_TRI", "elbow_flexion.bias", "shoulder_elv.gain", "BRA.fiber_length.lag"})
     EXPECT_THAT(ids, Contains(id));
-  for (const char* id : {"visc", "bias", "shoulder_elv.visc", "handforce", "spring", "mass_from"})
+  for (const char* id :
+       {"visc", "bias", "shoulder_elv.visc", "handforce", "spring", "mass_from", "biarticular_BRA"})
     EXPECT_THAT(ids, Not(Contains(id)));
   EXPECT_TRUE(c.data.encompassing().present().contains("shoulder_elv.visc"));  // of its holder
   const auto& axes = c.data.axes();
@@ -188,6 +193,68 @@ TEST(SeveralCoordinates, DerivativesMatchDifferences) {
   for (std::size_t i = 0; i < c.data.quantities().size(); ++i)
     if (c.data.quantities()[i].trial == 0) wanted.push_back(i);
   expectDifferences(c.data, values, wanted, 2e-4);
+}
+
+// As the model's moment arms at mid-range say, and only while it is long.
+TEST(SeveralCoordinates, BiarticularTissuePullsAllJointsThatItCrosses) {
+  const TwoJoints c({ofCoordinate("elbow_flexion"), ofCoordinate("shoulder_elv")});
+  const EncompassingModel& encompassing = c.data.encompassing();
+  const auto& groups = encompassing.groups();
+  const auto group = std::find_if(groups.begin(), groups.end(),
+                                  [](const MuscleGroup& one) { return one.name == "BIC"; });
+  ASSERT_NE(group, groups.end());
+  const auto k = static_cast<Index>(encompassing.find("biarticular_BIC.stiffness")),
+             r = static_cast<Index>(encompassing.find("biarticular_BIC.rest"));
+  const VectorXd nominal = info::discover::nominalValues(c.data);
+  const auto outputs = [&](double stiffness, double rest) {
+    VectorXd values = nominal;
+    values[k] = stiffness;
+    values[r] = rest;
+    return c.data.outputs(0, values, {});
+  };
+  const double middle = nominal[r];
+  const VectorXd absent = outputs(0, middle);
+  EXPECT_EQ(outputs(0, 0.6 * middle), absent);
+  // switched on, but without force: a step computes its last configuration anew, not by a shift
+  const std::vector<std::size_t> both = {static_cast<std::size_t>(k), static_cast<std::size_t>(r)};
+  EXPECT_LT((c.data.predict(0, nominal, {}, both, false).outputs - absent).cwiseAbs().maxCoeff(),
+            1e-12);  // 3e-14
+  EXPECT_LT((outputs(500, 1.5 * middle) - absent).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_GT((outputs(500, 0.6 * middle) - absent).cwiseAbs().maxCoeff(), 1e-3);
+  VectorXd values = nominal;
+  values[k] = 500;
+  values[r] = 0.6 * middle;
+  expectDifferences(c.data, values, both, 2e-4);
+  // moments of the law itself
+  const auto setting =
+      encompassing.settingAt(values.head(static_cast<Index>(encompassing.quantities().size())), {});
+  const MusculoskeletalSystem system = encompassing.systemOf(setting);
+  ASSERT_EQ(system.elasticPaths().size(), 1U);
+  VectorXd q = system.skeleton().defaultValues();
+  double length = middle;
+  for (Index i = 0; i < 2; ++i) {
+    const MovingCoordinate& at = encompassing.coordinates()[static_cast<std::size_t>(i)];
+    q[at.index] = at.middle() + 0.3;
+    length -= group->momentArms[i] * 0.3;  // it pulls as the muscles do
+  }
+  const auto& path = system.elasticPaths().front();
+  EXPECT_NEAR(path.path.compiled().function->at(q.data()).length, length, 1e-12);
+  EXPECT_NEAR(path.law.tension(length, 0).force, 500 * (length - 0.6 * middle), 1e-9);
+  // as OpenSim's PathSpring, which is known again
+  const Augmented added = addEffects(
+      encompassing, {{"biarticular_BIC", Eigen::Vector2d(500, 0.6 * middle), {}, 0, 0}}, {"", {}});
+  const support::ScratchFolder folder;
+  writeOsim(added.model, folder / "biarticular.osim");
+  const MusculoskeletalProblem again(
+      readOsim(folder / "biarticular.osim"), c.system.options,
+      std::vector<std::string>{"elbow_flexion", "shoulder_elv"},
+      {recorded(c.system, {ofCoordinate("elbow_flexion"), ofCoordinate("shoulder_elv")})}, exact());
+  EXPECT_TRUE(again.encompassing().present().contains("biarticular_BIC"));
+  EXPECT_LT(
+      (again.outputs(0, info::discover::nominalValues(again), {}) - outputs(500, 0.6 * middle))
+          .cwiseAbs()
+          .maxCoeff(),
+      1e-9);
 }
 
 // One error of a muscle pushes every joint that it crosses, by its moments there.

@@ -205,7 +205,7 @@ class EffectTable {
          sensor<&Sensor::gain>});
     add({"clock", "clock offset", se, true, "y(t) = q(t − s), held before the start", "s", "s", 0.04,
          false, {"delay"}, sensor<&Sensor::clock>});
-    add({"cubic", "cubic stiffness", s, false, "−k·(q − 1.2 rad)³", "k", "N m/rad³", 1.5, false, {},
+    add({"cubic", "cubic stiffness", s, true, "−k·(q − 1.2 rad)³", "k", "N m/rad³", 1.5, false, {},
          extra<&Extras::cubic>});
     add({"hysteresis", "Bouc–Wen hysteresis", s, false, "−α·z, ż = (w − abs(w)·z)/0.15 rad, z(0) = 0",
          "alpha", "N m", 0.6, false, {}, extra<&Extras::hysteresis>});

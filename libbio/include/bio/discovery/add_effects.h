@@ -11,9 +11,10 @@ namespace bio::discover {
 /// A model with effects added: an ordinary model, and the effects that a model file cannot express.
 ///
 /// In the model, visc and stiffness are OpenSim's SpringGeneralizedForce, limit its
-/// CoordinateLimitForce, payload the mass of a body, coulomb, stribeck, drag, powerdamp, const and
-/// handforce its ExpressionBasedCoordinateForce, tilt the direction of gravity; errors of
-/// parameters change the parameter; a missing muscle is the model's own, switched on. A force is
+/// CoordinateLimitForce, payload the mass of a body, lever_inertia the inertia of one, coulomb,
+/// stribeck, drag, powerdamp, cubic, limit_exp, const, handforce, spring and lever_weight its
+/// ExpressionBasedCoordinateForce, biarticular a PathSpring, tilt the direction of gravity; errors
+/// of parameters change the parameter; a missing muscle is the model's own, switched on. A force is
 /// called <coordinate>_<id>, by which it is recognised again. Effects of EMG and sensor cannot be
 /// written into a model: a simulation has to pass the excitations through `mapping`
 /// (drivenExcitation) and to compare the sensor's reading. A muscle that was switched on needs an

@@ -22,7 +22,7 @@ struct EffectEntry {
 
 // clang-format off
 /// The catalogue. τ is the generalised force on the coordinate, + up; w = q̇. Of several
-/// coordinates, visc to limit_exp, const, torque_from and torque_until are one per coordinate
+/// coordinates, visc to lever_inertia, const, torque_from and torque_until are one per coordinate
 /// (knee_angle_r.visc); handforce, spring, mass_from and mass_until are those of one coordinate
 /// only. Of several sensors, bias to drift are one per sensor.
 ///
@@ -34,13 +34,17 @@ struct EffectEntry {
 /// | drag | −c·w·|w| | c N·m·s² |
 /// | powerdamp | −b·w·(w² + 0.01²)^{(n−1)/2} | b |
 /// | stiffness | −k(q − q_r) | k N·m/rad |
+/// | cubic | −k(q − q_r)³ | k N·m/rad³ |
 /// | limit | OpenSim's CoordinateLimitForce, one stiffness for both ends | K N·m/rad |
 /// | limit_exp | c·[e^{−k(q−r+h)} − e^{k(q−r−h)}], h half the coordinate's range | c N·m |
+/// | lever_weight | +w·cos(q − r), of a prescribed rotation | w N·m |
+/// | lever_inertia | −I·q̈, of a prescribed rotation: an inertia of its nearest body | I kg·m² |
 /// | payload | a point at the mass centre of the farthest body | m kg |
 /// | tilt | gravity's moment is that of q + δ | δ rad |
 /// | const | +c | c N·m |
 /// | handforce | horizontal force at that mass centre, in the plane of the joint | F N |
 /// | spring | −k·max(0, L − L_r)·∂L/∂q, L from hand to shoulder (see band.cc) | k N/m |
+/// | biarticular_i | −K·max(0, L − L_r)·∂L/∂q, L = L_0 − Σ r_j q_j over the joints that muscle group i crosses | K N/m |
 /// | torque_from, torque_until, mass_from, mass_until | TimedForce (timed_force.h) | N·m or kg |
 /// | fatigue | u_i·[1 − φ(1 − e^{−∫u_i dt/T})], every muscle | φ |
 /// | missing_i | a muscle that the model has but switched off; its lengths within their tolerance | r = F0 over the model's |

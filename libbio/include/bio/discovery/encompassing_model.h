@@ -150,6 +150,7 @@ class EncompassingModel {
   std::size_t addLaw(SpringGeneralizedForce law);
   std::size_t addLaw(CoordinateLimitForce law);
   std::size_t addLaw(ExpressionBasedCoordinateForce law);
+  std::size_t addLaw(ElasticPath law);
   /// Switches on a muscle that is switched off in the base model, while a quantity requires it. Its
   /// F0 becomes negligible and is the number whose index is returned. Its EMG is that of the trial,
   /// or the mean of those of `synergists` (at least one).
@@ -198,7 +199,7 @@ class EncompassingModel {
     double nominal;
   };
   struct Law {
-    enum class List { spring, limit, expression, muscle } list;
+    enum class List { spring, limit, expression, elasticPath, muscle } list;
     std::size_t index;
     std::vector<std::size_t> quantities;
   };

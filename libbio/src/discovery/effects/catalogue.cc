@@ -21,12 +21,16 @@ void addStribeckFriction(EncompassingModel& model, const MovingCoordinate& at);
 void addQuadraticDrag(EncompassingModel& model, const MovingCoordinate& at);
 void addPowerDamping(EncompassingModel& model, const MovingCoordinate& at);
 void addStiffness(EncompassingModel& model, const MovingCoordinate& at);
+void addCubicStiffness(EncompassingModel& model, const MovingCoordinate& at);
 void addLimits(EncompassingModel& model, const MovingCoordinate& at);
 void addExponentialLimits(EncompassingModel& model, const MovingCoordinate& at);
+void addLeverWeight(EncompassingModel& model, const MovingCoordinate& at);
+void addLeverInertia(EncompassingModel& model, const MovingCoordinate& at);
 void addPayload(EncompassingModel& model);
 void addTilt(EncompassingModel& model);
 void addConstantTorque(EncompassingModel& model, const MovingCoordinate& at);
 void addElasticBand(EncompassingModel& model);
+void addBiarticularSprings(EncompassingModel& model);
 void addTimedTorques(EncompassingModel& model, const MovingCoordinate& at);
 void addTimedMasses(EncompassingModel& model);
 void addMissingMuscles(EncompassingModel& model);
@@ -53,13 +57,17 @@ const std::vector<EffectEntry>& effectEntries() {
       {"drag", addQuadraticDrag},
       {"powerdamp", addPowerDamping},
       {"stiffness", addStiffness},
+      {"cubic", addCubicStiffness},
       {"limit", addLimits},
       {"limit_exp", addExponentialLimits},
+      {"lever_weight", addLeverWeight},
+      {"lever_inertia", addLeverInertia},
       {"payload", addPayload},
       {"tilt", addTilt},
       {"const", addConstantTorque},
       {"handforce", addHandForce},
       {"spring", addElasticBand},
+      {"biarticular", addBiarticularSprings},
       {"timed", addTimedTorques},
       {"timed", addTimedMasses},
       {"fatigue", addFatigue},

@@ -1,13 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "discovery/effects/effects.h"
 
 // Forces that depend on the position alone. Priors: passive elbows (AIST database after Engin &
 // Chen 1987; MacKay et al. 1986), 0.5 to 3 N·m/rad in the middle, stiffer towards the ends. Of the
 // exponential law (a double exponential, as models of passive joints usually have) the rate's prior
-// is a judgement.
+// is a judgement. Engin & Chen fit a cubic of the extension angle; 2 N·m/rad³ are as stiff as
+// 3 N·m/rad at 0.7 rad from rest.
 
 namespace bio::discover {
 namespace {
@@ -50,6 +52,28 @@ void addStiffness(EncompassingModel& model, const MovingCoordinate& at) {
                         {{0.5 * size, at.middle()},
                          {0.5 * size, q.rangeMin + 0.2 * span},
                          {0.5 * size, q.rangeMax - 0.2 * span}}));
+}
+
+void addCubicStiffness(EncompassingModel& model, const MovingCoordinate& at) {
+  const Coordinate& q = at.coordinate;
+  const CoordinateUnits units = unitsOf(model, at);
+  const double size = units.strength / std::pow(units.length, 3);
+  const double span = q.rangeMax - q.rangeMin, middle = at.middle();
+  addExpression(model, at,
+                {"cubic",
+                 "cubic joint stiffness",
+                 fmt::format("A passive {} pulls the joint towards a rest position and grows with "
+                             "the cube of the distance from it.",
+                             units.word),
+                 "-k*(q-r)^3",
+                 {"k", "r"},
+                 {amplitude("cubic.stiffness", fmt::format("{}/{}^3", units.force, units.position),
+                            0, 20 * size, 2 * size),
+                  shape("cubic.rest", units.position, middle, middle - 0.3 * span,
+                        middle + 0.3 * span, 0.15 * span)},
+                 {{0.5 * size, middle},
+                  {0.5 * size, middle - 0.15 * span},
+                  {0.5 * size, middle + 0.15 * span}}});
 }
 
 void addLimits(EncompassingModel& model, const MovingCoordinate& at) {
