@@ -46,9 +46,8 @@ std::string verdictOf(const EnsembleFindings& f) {
   }
   for (std::size_t c = 0; c < f.channels.size(); ++c) {
     const auto& sobol = f.channels[c].sobol;
-    if (!sobol || !(sobol->indices.variance > 0)) continue;
     Eigen::Index most = 0;
-    sobol->indices.total.maxCoeff(&most);
+    if (!sobol || !(sobol->indices.total.maxCoeff(&most) > 0)) continue;
     text += fmt::format(" {} contributes most to the variance of {} (total Sobol index {}).",
                         parameters[static_cast<std::size_t>(most)].name, outputOf(f, c),
                         numberText(sobol->indices.total[most], 2));
