@@ -105,7 +105,7 @@ int HotJobs::ensemble(int count, int threads) const {
       {"*.max_isometric_force", "*.optimal_fiber_length", "*.tendon_slack_length"});
   const Eigen::VectorXd nominal = elbow_.catalogue.values(drawn);
   const SystemBatch ensemble(elbow_.catalogue, fixtures::ShippedElbow::options(), elbow_.excitation,
-                             "elbow_flexion", std::nullopt, {}, drawn, options());
+                             {{ofCoordinate("elbow_flexion"), {}}}, {}, drawn, options());
   constexpr int together = 16;
   std::atomic<int> completed = 0;
   info::parallelFor((count + together - 1) / together, threads, [&](int batch) {

@@ -60,7 +60,7 @@ py::object spreadOf(const std::vector<double>& values, double nominal) {
 }
 
 /// Percentiles over the runs at each time.
-py::object bandOf(const Eigen::MatrixXd& courses, const bio::EnsembleRun& nominal) {
+py::object bandOf(const Eigen::MatrixXd& courses, const bio::ChannelRun& nominal) {
   const Eigen::Index n = courses.cols();
   Eigen::VectorXd mean(n), p5(n), p50(n), p95(n);
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -74,12 +74,11 @@ py::object bandOf(const Eigen::MatrixXd& courses, const bio::EnsembleRun& nomina
                  "p95"_a = p95);
 }
 
-py::object sobolOf(const std::optional<bio::SobolFinding>& sobol) {
-  if (!sobol) return py::none();
-  const info::SobolResult& indices = sobol->indices;
+py::object sobolOf(const bio::SobolFinding& sobol) {
+  const info::SobolResult& indices = sobol.indices;
   return results(
-      "first"_a = indices.first, "first_interval"_a = Eigen::MatrixXd(sobol->intervals.first),
-      "total"_a = indices.total, "total_interval"_a = Eigen::MatrixXd(sobol->intervals.total),
+      "first"_a = indices.first, "first_interval"_a = Eigen::MatrixXd(sobol.intervals.first),
+      "total"_a = indices.total, "total_interval"_a = Eigen::MatrixXd(sobol.intervals.total),
       "variance"_a = indices.variance, "undefined"_a = indices.undefined);
 }
 
@@ -94,46 +93,66 @@ py::list lawsOf(const bio::ParameterLaws& laws) {
   return list;
 }
 
-/// One number of each run, e.g. a scalar output.
-template <class Number>
-std::vector<double> ofEachRun(const std::vector<bio::EnsembleRun>& runs, Number number) {
-  std::vector<double> values;
-  for (const bio::EnsembleRun& run : runs) values.push_back(number(run));
-  return values;
-}
-
 Eigen::VectorXd arrayOf(const std::vector<double>& values) {
   return Eigen::VectorXd::Map(values.data(), std::ssize(values));
 }
 
-py::object resultOf(const bio::TrialEnsemble& ensemble, const EnsembleRows& rows,
-                    const std::optional<bio::SobolFinding>& sobol) {
-  const auto n = static_cast<Eigen::Index>(rows.runs.size());
-  Eigen::MatrixXd courses(n, std::ssize(ensemble.course()));
-  std::vector<std::string> outcomes;
+/// A number of a channel of each run.
+std::vector<double> ofEachRun(const EnsembleRows& rows, std::size_t channel,
+                              const bio::EnsembleOutput& output) {
+  std::vector<double> values;
+  for (const bio::EnsembleRun& run : rows.runs) values.push_back(output.of(run.channels[channel]));
+  return values;
+}
+
+py::object channelOf(const bio::TrialEnsemble& ensemble, const EnsembleRows& rows,
+                     std::size_t channel, const std::vector<bio::SobolFinding>& sobol) {
+  const bio::Observable& what = ensemble.channels()[channel].what;
+  const bio::ChannelRun& nominal = ensemble.nominal().channels[channel];
+  Eigen::MatrixXd courses(std::ssize(rows.runs), std::ssize(ensemble.course()));
   int left = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const bio::EnsembleRun& run = rows.runs[static_cast<std::size_t>(i)];
-    courses.row(i) = run.atCourse;
-    outcomes.push_back(run.outcome);
-    left += bio::leavesRange(ensemble.coordinate(), run.lowest, run.highest) ? 1 : 0;
+  for (std::size_t i = 0; i < rows.runs.size(); ++i) {
+    const bio::ChannelRun& run = rows.runs[i].channels[channel];
+    courses.row(static_cast<Eigen::Index>(i)) = run.atCourse;
+    if (!what.isCoordinate()) continue;
+    const bio::Coordinate& coordinate = bio::findCoordinate(ensemble.model(), what.of);
+    left += bio::leavesRange(coordinate, run.lowest, run.highest) ? 1 : 0;
   }
   py::dict outputs, spreads;
   for (const bio::EnsembleOutput& output : bio::ensembleOutputs()) {
-    const std::vector<double> values = ofEachRun(rows.runs, output.of);
+    const std::vector<double> values = ofEachRun(rows, channel, output);
     outputs[output.name.c_str()] = arrayOf(values);
-    spreads[output.name.c_str()] = spreadOf(values, output.of(ensemble.nominal()));
+    spreads[output.name.c_str()] = spreadOf(values, output.of(nominal));
   }
+  return results("name"_a = bio::nameOf(what), "unit"_a = bio::unitOf(what, ensemble.model()),
+                 "outputs"_a = outputs, "spread"_a = spreads, "course"_a = courses,
+                 "band"_a = bandOf(courses, nominal),
+                 "sobol"_a = sobol.empty() ? py::none() : sobolOf(sobol[channel]),
+                 "left_range"_a = left);
+}
+
+py::object resultOf(const bio::TrialEnsemble& ensemble, const EnsembleRows& rows,
+                    const std::vector<bio::SobolFinding>& sobol) {
+  std::vector<std::string> outcomes;
+  std::vector<double> failed;
+  for (const bio::EnsembleRun& run : rows.runs) {
+    outcomes.push_back(run.outcome);
+    failed.push_back(run.failedAt);
+  }
+  py::list channels;
+  for (std::size_t c = 0; c < ensemble.channels().size(); ++c) {
+    channels.append(channelOf(ensemble, rows, c, sobol));
+  }
+  const py::object first = channels[0];
   std::vector<std::string> warnings;
   if (!ensemble.nominalRemark().empty()) warnings.push_back(ensemble.nominalRemark());
-  const std::vector<double> failed =
-      ofEachRun(rows.runs, [](const bio::EnsembleRun& run) { return run.failedAt; });
-  return results("coordinate"_a = ensemble.coordinate().name, "laws"_a = lawsOf(ensemble.laws()),
+  return results("coordinate"_a = first.attr("name"), "laws"_a = lawsOf(ensemble.laws()),
                  "parameters"_a = rows.parameters, "outcome"_a = outcomes,
-                 "failed_at"_a = arrayOf(failed), "outputs"_a = outputs, "spread"_a = spreads,
-                 "time"_a = arrayOf(ensemble.course()), "course"_a = courses,
-                 "band"_a = bandOf(courses, ensemble.nominal()), "sobol"_a = sobolOf(sobol),
-                 "left_range"_a = left, "warnings"_a = warnings);
+                 "failed_at"_a = arrayOf(failed), "outputs"_a = first.attr("outputs"),
+                 "spread"_a = first.attr("spread"), "time"_a = arrayOf(ensemble.course()),
+                 "course"_a = first.attr("course"), "band"_a = first.attr("band"),
+                 "sobol"_a = first.attr("sobol"), "left_range"_a = first.attr("left_range"),
+                 "channels"_a = channels, "warnings"_a = warnings);
 }
 
 py::object ensemble(const bio::Model& model, const bio::Trial& trial,
@@ -141,14 +160,11 @@ py::object ensemble(const bio::Model& model, const bio::Trial& trial,
                     std::uint64_t seed, const std::string& distribution, double spread,
                     const Pairs& prior, const Pairs& bounds,
                     const std::optional<Covariance>& covariance, bool sobol,
-                    const std::string& output, int bandPoints, int threads,
-                    const std::map<std::string, double>& initial, const Names& coordinate,
-                    const std::map<std::string, double>& lock, const std::string& integrator,
-                    std::optional<double> step) {
+                    const std::string& output, const std::vector<std::string>& observe,
+                    int bandPoints, int threads, const std::map<std::string, double>& initial,
+                    const Names& coordinate, const std::map<std::string, double>& lock,
+                    const std::string& integrator, std::optional<double> step) {
   const SystemChoice choice = systemChoice(model, {trial}, coordinate, lock, integrator, step);
-  if (choice.coordinates.empty()) {
-    throw std::invalid_argument("no coordinate is free to be observed: all are prescribed");
-  }
   if (first < 0 || (first > 0 && sobol)) {
     throw std::invalid_argument(fmt::format(
         "first = {}, must be ≥ 0, and 0 with sobol, whose runs belong together", first));
@@ -166,11 +182,12 @@ py::object ensemble(const bio::Model& model, const bio::Trial& trial,
   options.draws = draws;
   options.sobol = sobol;
   options.output = output;
+  options.observe = observe;
   options.bandPoints = bandPoints;
   options.simulation = during(trial, choice.simulation());
   std::unique_ptr<const bio::TrialEnsemble> made;
   EnsembleRows rows;
-  std::optional<bio::SobolFinding> indices;
+  std::vector<bio::SobolFinding> indices;
   interruptible([&](const std::atomic<bool>& goOn) {
     const bio::MusculoskeletalSystem system(model, choice.systemOptions());
     made = std::make_unique<const bio::TrialEnsemble>(
@@ -178,9 +195,12 @@ py::object ensemble(const bio::Model& model, const bio::Trial& trial,
         bio::beginningOf(trial, model, system, initial).point, options);
     rows = rowsOf(*made, first, seed, threads, goOn);
     if (!sobol || !goOn) return;
-    const auto valueOf = bio::ensembleOutputs()[bio::ensembleOutputNamed(output)].of;
-    indices = bio::sobolOf(ofEachRun(rows.runs, valueOf),
-                           static_cast<int>(made->laws().parameters.size()), seed);
+    const bio::EnsembleOutput& decomposed =
+        bio::ensembleOutputs()[bio::ensembleOutputNamed(output)];
+    for (std::size_t c = 0; c < made->channels().size(); ++c) {
+      indices.push_back(bio::sobolOf(ofEachRun(rows, c, decomposed),
+                                     static_cast<int>(made->laws().parameters.size()), seed));
+    }
   });
   return resultOf(*made, rows, indices);
 }
@@ -192,7 +212,8 @@ void defineEnsemble(py::module_& module) {
                    py::kw_only(), "parameters"_a = std::vector<std::string>(), "draws"_a = 1000,
                    "first"_a = 0, "seed"_a = 1, "distribution"_a = "normal", "spread"_a = 1.0,
                    "prior"_a = Pairs(), "bounds"_a = Pairs(), "covariance"_a = py::none(),
-                   "sobol"_a = false, "output"_a = "final", "band_points"_a = 46, "threads"_a = 1,
+                   "sobol"_a = false, "output"_a = "final",
+                   "observe"_a = std::vector<std::string>(), "band_points"_a = 46, "threads"_a = 1,
                    "initial"_a = std::map<std::string, double>());
 }
 

@@ -127,6 +127,41 @@ class Ensemble(AgainstProgram):
                 interval = getattr(found.sobol, of + "_interval")[i]
                 np.testing.assert_allclose([getattr(found.sobol, of)[i], *interval], wanted, rtol=1e-6)
 
+    def test_channels_are_those_of_the_program(self):
+        channels = ["shoulder_elv", "elbow_flexion.speed", "BIClong.tendon_force"]
+        joints = ["elbow_flexion", "shoulder_elv"]
+        out = program(self.scratch, "ensemble", ELBOW, SLOW, "--draws", "6", "--parameters", "hand.mass", "--sobol",
+                      "--observe", ",".join(channels), *(word for name in joints for word in ("--coordinate", name)))
+        found = fh.ensemble(self.model, self.trial, draws=6, parameters=["hand.mass"], sobol=True, observe=channels,
+                            coordinate=joints)
+        stub.check(found, "EnsembleResult")
+        self.assertEqual([one.name for one in found.channels], channels)
+        self.assertEqual([one.unit for one in found.channels], ["rad", "rad/s", "N"])
+        told = summary(out)["channels"]
+        for channel in found.channels:
+            shown = DEGREE if channel.unit.startswith("rad") else 1
+            for name, spread in channel.spread.items():
+                for of in ("nominal", "mean", "sd", "p5", "p50", "p95"):
+                    wanted = told[channel.name][name][of]
+                    np.testing.assert_allclose(getattr(spread, of) / shown, math.nan if wanted is None else wanted,
+                                               rtol=1e-7, atol=1e-9)
+            np.testing.assert_allclose(channel.sobol.total, [one["total"] for one in told[channel.name]["sobol"]["indices"]],
+                                       rtol=1e-5)
+            self.assertEqual(channel.course.shape, (18, 46))
+        self.assertEqual(found.coordinate, "shoulder_elv")
+        np.testing.assert_array_equal(found.course, found.channels[0].course)
+        np.testing.assert_array_equal(found.outputs["max"], found.channels[0].outputs["max"])
+
+    def test_a_prescribed_elbows_moment_is_that_of_replay(self):
+        trial = fh.load_trial(SLOW, self.model, prescribe=["elbow_flexion"])
+        found = fh.ensemble(self.model, trial, draws=3, parameters=["hand.mass"], observe=["elbow_flexion.moment"],
+                            band_points=451)
+        alone = fh.replay(self.model, trial)
+        np.testing.assert_allclose(found.band.nominal, -alone.reaction["elbow_flexion"], rtol=0, atol=1e-9)
+        self.assertEqual([found.channels[0].unit, found.left_range], ["N·m", 0])
+        with self.assertRaisesRegex(ValueError, "no coordinate is free to be observed: observe must name what is"):
+            fh.ensemble(self.model, trial, draws=3)
+
     def test_rules(self):
         for words, more in (
             ("no parameter is called 'TRI.radios'", {"parameters": ["TRI.radios"]}),
@@ -137,6 +172,8 @@ class Ensemble(AgainstProgram):
             ("output 'speed'", {"output": "speed"}),
             ("sobol: 285 parameters, at most 32", {"sobol": True}),
             ("spread = 0", {"spread": 0.0}),
+            ("observe: 'elbow' is nothing that can be measured", {"observe": ["elbow"]}),
+            ("observe: 'elbow_flexion' is given twice", {"observe": ["elbow_flexion", "elbow_flexion"]}),
             ("prior: ulna.mass is not one of the parameters", {"parameters": ["hand.mass"], "prior": {"ulna.mass": (1, 1)}}),
             ("standard deviation = 0 must be > 0", {"parameters": ["hand.mass"], "prior": {"hand.mass": (0.5, 0)}}),
         ):

@@ -17,10 +17,10 @@
 #include "info/version.h"
 #include "options/input_rules.h"
 #include "options/number_rules.h"
+#include "options/observed_channels.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "report/result.h"
-#include "sensitivity/sensitivity_report.h"
 
 namespace app {
 namespace {
@@ -34,8 +34,7 @@ struct EnsembleStudy {
                 const bio::TrialEnsembleOptions& options)
       : duration(input.trial.duration()),
         ensemble(model, system, built, input.trial, {input.start.q, input.start.qDot}, options),
-        table(ensemble.laws().parameters, ensemble.course(), shownFactor(ensemble.coordinate()),
-              shownUnit(ensemble.coordinate())) {}
+        table(ensemble) {}
 
   double duration;  ///< of the trial [s]
   bio::TrialEnsemble ensemble;
@@ -58,8 +57,8 @@ class Ensemble : public Command {
     addModelArgument(options, model_);
     options
         .add_option("TRIAL", trial_,
-                    "trial: excitations, and the measured coordinate if it was recorded; required "
-                    "unless --discover is given")
+                    "trial: excitations, and what was measured; required unless --discover is "
+                    "given")
         ->check(CLI::ExistingFile)
         ->type_name("");
     const std::string group = "Ensemble";
@@ -104,6 +103,11 @@ class Ensemble : public Command {
         ->check(CLI::ExistingFile)
         ->type_name("FILE.csv")
         ->group(group);
+    list("--observe", observe_,
+         "channels instead of all free coordinates: elbow_flexion, elbow_flexion.moment, "
+         "BRA.fiber_length, …; =SD behind a name, as for sensitivity, has no effect; may be "
+         "repeated")
+        ->type_name("NAME");
     options
         .add_option("--band-points", bandPoints_, "number of time points in the percentile band")
         ->check(CLI::Range(2, 1000))
@@ -111,7 +115,8 @@ class Ensemble : public Command {
         ->type_name("N")
         ->group(group);
     options
-        .add_flag("--sobol", sobol_, "variance-based sensitivity: Sobol's indices of the output")
+        .add_flag("--sobol", sobol_,
+                  "variance-based sensitivity: Sobol's indices of the output of every channel")
         ->group(group);
     options.add_option("--output", output_, "output whose variance --sobol decomposes")
         ->check(CLI::IsMember(DrawTable::outputNames()))
@@ -120,15 +125,15 @@ class Ensemble : public Command {
     const std::string sets = "Discovery over many data sets";
     options
         .add_option("--discover", discover_,
-                    "instead of TRIAL: run discover on every subfolder that has train_*.sto and "
-                    "held_out*.sto; requires --out")
+                    "instead of TRIAL: run discover, on all that is measured, on every subfolder "
+                    "that has train_*.sto and held_out*.sto; requires --out")
         ->check(CLI::ExistingDirectory)
         ->type_name("DIR")
         ->group(sets);
     options
         .add_option("--noise-deg", noise_,
-                    "with --discover: standard deviation of the measured angle [deg]; default: "
-                    "estimated from the data")
+                    "with --discover: standard deviation of the measured angles [deg], where "
+                    "nothing else is measured; default: estimated from the data")
         ->check(positive())
         ->type_name("DEG")
         ->group(sets);
@@ -184,7 +189,7 @@ class Ensemble : public Command {
     warnOfRange(study, findings, summary);
     folder.write("draws.csv", [&](std::ostream& out) { writeDraws(findings, out); });
     folder.write("band.csv", [&](std::ostream& out) { writeBand(findings, out); });
-    if (findings.sobol) {
+    if (sobol_) {
       folder.write("sobol.csv", [&](std::ostream& out) { writeSobol(findings, out); });
     }
     summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), study.duration,
@@ -219,14 +224,15 @@ class Ensemble : public Command {
   /// By pointer, since the rows' work refers to it.
   std::unique_ptr<const EnsembleStudy> prepare(Summary& summary) {
     const bio::Model model = readModel(model_, summary);
-    chooseCoordinates(simulation_, model, {trial_});
-    requireFreeCoordinate(simulation_);
+    chooseCoordinates(simulation_, model, {trial_}, false, observe_);
     const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
-    const TrialInput input = readTrialInput(trial_, model, system, simulation_, summary);
+    const TrialInput input = readTrialInput(trial_, model, system, simulation_, summary,
+                                            {.channels = !observe_.empty()});
     bio::TrialEnsembleOptions options{.laws = lawRequest(laws_),
                                       .draws = draws_,
                                       .sobol = sobol_,
                                       .output = output_,
+                                      .observe = namesOf(observe_),
                                       .bandPoints = bandPoints_};
     options.simulation = input.recorded.simulation;
     if (options.laws.covariance) summary.addInput(laws_.covarianceFile);
@@ -238,19 +244,25 @@ class Ensemble : public Command {
     return made;
   }
 
-  /// Tells how many draws leave the coordinate's range by more than a tenth of it.
+  /// Tells how many draws leave the range of an observed coordinate by more than a tenth of it.
   static void warnOfRange(const EnsembleStudy& study, const EnsembleFindings& f, Summary& summary) {
-    const bio::Coordinate& c = study.ensemble.coordinate();
-    const double shown = study.table.shown();
-    std::uint64_t left = 0;
-    for (std::uint64_t i = 0; i < f.count; ++i) {  // the smallest and the largest value
-      left += bio::leavesRange(c, f.outputs[3][i] / shown, f.outputs[4][i] / shown) ? 1 : 0;
+    for (std::size_t channel = 0; channel < f.channels.size(); ++channel) {
+      const bio::Observable& what = study.ensemble.channels()[channel].what;
+      if (!what.isCoordinate()) continue;
+      const bio::Coordinate& c = bio::findCoordinate(study.ensemble.model(), what.of);
+      const auto& [factor, unit] = study.table.channels()[channel].unit;
+      const auto& lowest = f.channels[channel].outputs[3];
+      const auto& highest = f.channels[channel].outputs[4];
+      std::uint64_t left = 0;
+      for (std::size_t i = 0; i < lowest.size(); ++i) {
+        left += bio::leavesRange(c, lowest[i] / factor, highest[i] / factor) ? 1 : 0;
+      }
+      if (left == 0) continue;
+      summary.warn(fmt::format(
+          "in {} of {} simulations {} leaves its range, {:.4g} to {:.4g} {}, by more than a tenth "
+          "of it",
+          left, lowest.size(), c.name, c.rangeMin * factor, c.rangeMax * factor, unit));
     }
-    if (left == 0) return;
-    summary.warn(fmt::format(
-        "in {} of {} simulations {} leaves its range, {:.4g} to {:.4g} {}, by "
-        "more than a tenth of it",
-        left, f.count, c.name, c.rangeMin * shown, c.rangeMax * shown, study.table.unit()));
   }
 
   /// A row is a function of seed and number alone.
@@ -283,6 +295,7 @@ class Ensemble : public Command {
     json["scheme"] = sobol_ ? "sobol" : "draws";
     json["distribution"] = laws_.distribution;
     json["band_points"] = bandPoints_;
+    json["observe"] = namesOf(observe_);
     json["simulation"] = settingsOf(simulation_);
     if (study.ensemble.laws().together) json["covariance_sha256"] = summary.inputs()[2].sha256;
     json["parameters"] = Json::array();
@@ -298,18 +311,17 @@ class Ensemble : public Command {
     EnsembleFindings findings{
         model_,
         trial_,
-        study.ensemble.coordinate().name,
+        study.ensemble,
         study.table,
-        study.ensemble.laws().parameters,
-        study.ensemble.nominal(),
-        study.ensemble.count(),
         [&](std::uint64_t number) { return study.table.parse(number, file.row(number)); },
-        study.ensemble.measured()};
+        output_,
+        draws_};
     collect(findings);
-    if (!sobol_) return findings;
-    const std::vector<double>& values = findings.outputs[bio::ensembleOutputNamed(output_)];
     const auto p = static_cast<int>(study.ensemble.laws().parameters.size());
-    findings.sobol = SobolOfOutput{output_, bio::sobolOf(values, p, seed), draws_};
+    for (ChannelFindings& channel : findings.channels) {
+      if (!sobol_) break;
+      channel.sobol = bio::sobolOf(channel.outputs[bio::ensembleOutputNamed(output_)], p, seed);
+    }
     return findings;
   }
 
@@ -318,6 +330,7 @@ class Ensemble : public Command {
   std::string model_, trial_;
   int draws_ = 1000;
   TypedLaws laws_;
+  std::vector<std::string> observe_;
   int bandPoints_ = 46;
   bool sobol_ = false;
   std::string output_ = "final";

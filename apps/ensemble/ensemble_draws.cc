@@ -8,9 +8,25 @@
 #include <stdexcept>
 
 #include "output/resumable_table.h"
+#include "sensitivity/sensitivity_report.h"
 
 namespace app {
 namespace {
+
+/// "TRI.radius [m]"; without a unit the name alone.
+std::string withBrackets(const std::string& name, const std::string& unit) {
+  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
+}
+
+ShownChannel shown(const bio::Observable& what, const bio::Model& model) {
+  if (what.isCoordinate()) {
+    const bio::Coordinate& coordinate = bio::findCoordinate(model, what.of);
+    return {coordinate.name, {shownFactor(coordinate), shownUnit(coordinate)}};
+  }
+  const std::string unit = bio::unitOf(what, model);
+  if (!unit.starts_with("rad")) return {nameOf(what), {1, unit}};
+  return {nameOf(what), {degreesPerRadian, "deg" + unit.substr(3)}};
+}
 
 /// At most nine digits: what other machines' libraries round otherwise is not shown.
 void addNumber(std::string& row, double value, const char* format = "{:.9g}") {
@@ -26,32 +42,47 @@ std::vector<std::string> DrawTable::outputNames() {
   return names;
 }
 
-DrawTable::DrawTable(const std::vector<bio::DrawnParameter>& parameters,
-                     const std::vector<double>& course, double shown, const std::string& shownUnit)
-    : course_(course), shown_(shown), unit_(shownUnit) {
-  for (const bio::DrawnParameter& parameter : parameters) {
-    parameters_.push_back(parameter.unit.empty()
-                              ? parameter.name
-                              : fmt::format("{} [{}]", parameter.name, parameter.unit));
+DrawTable::DrawTable(const bio::TrialEnsemble& ensemble)
+    : course_(ensemble.course()),
+      startsWithCoordinate_(ensemble.channels().front().what.isCoordinate()) {
+  for (const bio::DrawnParameter& parameter : ensemble.laws().parameters) {
+    parameters_.push_back(withBrackets(parameter.name, parameter.unit));
   }
+  for (const bio::EnsembleChannel& channel : ensemble.channels()) {
+    channels_.push_back(shown(channel.what, ensemble.model()));
+  }
+}
+
+std::string DrawTable::columnOf(const ShownChannel& channel, const std::string& number) const {
+  if (isOneCoordinate()) return number + "_" + channel.unit.name;
+  return withBrackets(channel.name + "." + number, channel.unit.name);
 }
 
 std::vector<std::string> DrawTable::columns() const {
   std::vector<std::string> names = {"draw", "outcome", "failed_at_s"};
-  for (const bio::EnsembleOutput& output : bio::ensembleOutputs())
-    names.push_back(columnOf(output));
+  for (const ShownChannel& channel : channels_) {
+    for (const bio::EnsembleOutput& output : bio::ensembleOutputs())
+      names.push_back(columnOf(channel, output.name));
+  }
   names.insert(names.end(), parameters_.begin(), parameters_.end());
-  for (const double t : course_) names.push_back(fmt::format("at {:.6g} s", t));
+  for (const ShownChannel& channel : channels_) {
+    for (const double t : course_) names.push_back(fmt::format("{} at {:.6g} s", channel.name, t));
+  }
   return names;
 }
 
 std::string DrawTable::row(const bio::EnsembleRun& run, const Eigen::VectorXd& theta) const {
   std::string row = run.outcome;
   addNumber(row, run.failedAt);
-  for (const bio::EnsembleOutput& output : bio::ensembleOutputs())
-    addNumber(row, shown_ * output.of(run));
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    for (const bio::EnsembleOutput& output : bio::ensembleOutputs())
+      addNumber(row, channels_[c].unit.factor * output.of(run.channels[c]));
+  }
   for (const double value : theta) addNumber(row, value, "{}");
-  for (const double value : run.atCourse) addNumber(row, shown_ * value, "{:.7g}");
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    for (const double value : run.channels[c].atCourse)
+      addNumber(row, channels_[c].unit.factor * value, "{:.7g}");
+  }
   return row;
 }
 
@@ -71,12 +102,13 @@ DrawTable::Row DrawTable::parse(std::uint64_t number, const std::string& text) c
     return value;
   };
   row.failedAt = next();
-  for (std::size_t i = 0; i < bio::ensembleOutputs().size(); ++i) row.outputs.push_back(next());
+  const std::size_t outputs = channels_.size() * bio::ensembleOutputs().size();
+  for (std::size_t i = 0; i < outputs; ++i) row.outputs.push_back(next());
   for (std::size_t i = 0; i < parameters_.size(); ++i) row.parameters.push_back(next());
   std::size_t length = 0;
   for (std::size_t i = 0; i < at; ++i) length += cells[i].size() + 1;
   row.head = text.substr(0, length - 1);
-  for (std::size_t i = 0; i < course_.size(); ++i) row.course.push_back(next());
+  while (at < cells.size()) row.course.push_back(next());
   return row;
 }
 

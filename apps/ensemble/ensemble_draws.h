@@ -4,19 +4,23 @@
 #include <vector>
 
 #include "bio/analysis/ensemble_statistics.h"
-#include "bio/analysis/parameter_laws.h"
+#include "bio/analysis/trial_ensemble.h"
+#include "output/angle_unit.h"
 
 namespace app {
 
+/// An observed channel as people see it.
+struct ShownChannel {
+  std::string name;
+  ShownUnit unit;  ///< degrees for angles, millimetres for coordinates that slide
+};
+
 /// Writes and reads the rows from which draws.csv and band.csv are made. A row has the outcome of a
-/// run, its outputs, its parameters and the course of the coordinate, in degrees or millimetres. A
-/// missing number is an empty cell.
+/// run, the outputs of its channels, its parameters and the courses of the channels. A missing
+/// number is an empty cell.
 class DrawTable {
  public:
-  /// @param shown factor from the coordinate's unit to degrees or millimetres
-  /// @param shownUnit  "deg" or "mm"
-  DrawTable(const std::vector<bio::DrawnParameter>& parameters, const std::vector<double>& course,
-            double shown, const std::string& shownUnit);
+  explicit DrawTable(const bio::TrialEnsemble& ensemble);
 
   /// Names of the outputs, for --output.
   static std::vector<std::string> outputNames();
@@ -24,10 +28,10 @@ class DrawTable {
   /// Columns of the unfinished file; the first is the row's number.
   std::vector<std::string> columns() const;
   /// Number of them that draws.csv has: all but the course.
-  std::size_t shortColumns() const { return columns().size() - course_.size(); }
-  std::string columnOf(const bio::EnsembleOutput& output) const {
-    return output.name + "_" + unit_;
-  }
+  std::size_t shortColumns() const { return columns().size() - channels_.size() * course_.size(); }
+  /// A number of a channel, e.g. "final": "final_deg" where one coordinate is all that is observed,
+  /// else "elbow_flexion.final [deg]".
+  std::string columnOf(const ShownChannel& channel, const std::string& number) const;
 
   /// All cells but the number.
   std::string row(const bio::EnsembleRun& run, const Eigen::VectorXd& theta) const;
@@ -36,23 +40,25 @@ class DrawTable {
   struct Row {
     std::string outcome;
     double failedAt = 0;
-    std::vector<double> outputs = {};  ///< in the order of bio::ensembleOutputs()
+    std::vector<double> outputs = {};  ///< channel by channel in the order of ensembleOutputs()
     std::vector<double> parameters = {};
-    std::vector<double> course = {};
-    std::string head = {};  ///< the cells for draws.csv
+    std::vector<double> course = {};  ///< channel by channel
+    std::string head = {};            ///< the cells for draws.csv
   };
   /// @throws std::runtime_error if a cell is not a number
   Row parse(std::uint64_t number, const std::string& text) const;
 
-  double shown() const { return shown_; }
-  const std::string& unit() const { return unit_; }
+  const std::vector<ShownChannel>& channels() const { return channels_; }
   const std::vector<double>& course() const { return course_; }
+  /// Whether the first channel is a coordinate, and whether it is the only one.
+  bool startsWithCoordinate() const { return startsWithCoordinate_; }
+  bool isOneCoordinate() const { return startsWithCoordinate_ && channels_.size() == 1; }
 
  private:
   std::vector<std::string> parameters_;  ///< "TRI.radius [m]"
   std::vector<double> course_;
-  double shown_;
-  std::string unit_;
+  std::vector<ShownChannel> channels_;
+  bool startsWithCoordinate_;
 };
 
 }  // namespace app

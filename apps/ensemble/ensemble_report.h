@@ -12,35 +12,31 @@
 
 namespace app {
 
-/// Sobol's indices of one output.
-struct SobolOfOutput {
-  std::string output;  ///< "final"
-  bio::SobolFinding found;
-  int basePoints;
-};
-
 /// Percentiles over time of the runs that reached the end, in shown units.
 struct Band {
   std::vector<double> time, nominal, mean, p5, p50, p95;
 };
 
+/// The findings about a channel.
+struct ChannelFindings {
+  std::vector<std::vector<double>> outputs;  ///< by output, then by row; NaN: none
+  Band band = {};
+  std::optional<bio::SobolFinding> sobol = {};
+};
+
 /// The findings of `ensemble`. Rows are read one by one when they are needed.
 struct EnsembleFindings {
   std::string modelFile, trialFile;
-  std::string coordinate;
+  const bio::TrialEnsemble& ensemble;
   const DrawTable& table;
-  const std::vector<bio::DrawnParameter>& parameters;
-  const bio::EnsembleRun& nominal;
-  std::uint64_t count;                               ///< of rows
-  std::function<DrawTable::Row(std::uint64_t)> row;  ///< by number, below `count`
-  std::optional<bio::MeasuredChannel> measured;
+  std::function<DrawTable::Row(std::uint64_t)> row;    ///< by number, below `ensemble.count()`
+  std::string output;                                  ///< that of Sobol's indices
+  int basePoints;                                      ///< of Sobol's indices
   std::map<std::string, std::uint64_t> outcomes = {};  ///< number of simulations by outcome
-  std::vector<std::vector<double>> outputs = {};       ///< by output, then by row; NaN: none
-  Band band = {};
-  std::optional<SobolOfOutput> sobol = {};
+  std::vector<ChannelFindings> channels = {};          ///< as the table has them
 };
 
-/// Fills outcomes, outputs and the band from the rows.
+/// Fills outcomes and channels, without Sobol's indices, from the rows.
 void collect(EnsembleFindings& findings);
 
 /// draws.csv, band.csv and sobol.csv

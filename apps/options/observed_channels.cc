@@ -18,6 +18,14 @@ std::vector<bio::ChannelCandidate> readObserved(const std::vector<std::string>& 
   return bio::observedChannels(named, model, system);
 }
 
+std::vector<std::string> namesOf(const std::vector<std::string>& typed) {
+  std::vector<std::string> names;
+  for (const std::string& text : typed) {
+    names.push_back(text.find('=') == text.npos ? text : parseAssignment(text).name);
+  }
+  return names;
+}
+
 std::string inWords(const std::vector<bio::ChannelCandidate>& channels, const bio::Model& model) {
   std::string text;
   for (const bio::ChannelCandidate& candidate : channels) {

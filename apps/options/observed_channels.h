@@ -5,8 +5,12 @@
 
 #include "bio/analysis/sensitivity_study.h"
 
-/// The channels that `sensitivity` and `design` observe.
+/// The channels that `sensitivity`, `design` and `ensemble` observe.
 namespace app {
+/// The names in NAME or NAME=SD, for what needs no noise.
+/// @throws std::invalid_argument for an SD that is not a number
+std::vector<std::string> namesOf(const std::vector<std::string>& typed);
+
 /// Channels with the standard deviations of their noise.
 /// @param typed  NAME=SD each, as --observe takes them
 /// @throws what bio::observedChannels throws; std::invalid_argument for text of another kind

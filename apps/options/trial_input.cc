@@ -185,8 +185,8 @@ void chooseCoordinates(SimulationOptions& options, const bio::Model& model,
   MeasuredNames measured = measuredIn(trials, model, options);
   if (!options.takesPrescribed) measured.moments.clear();
   for (const std::string& text : observed) {
-    const auto moment = text.rfind(".moment=");
-    if (moment != std::string::npos) measured.moments.insert(text.substr(0, moment));
+    const std::string name = text.substr(0, text.find('='));
+    if (name.ends_with(".moment")) measured.moments.insert(name.substr(0, name.size() - 7));
   }
   if (!isTyped) {
     options.areChosen = true;

@@ -40,7 +40,8 @@ void refusePrescribedByModel(const SimulationOptions& options, const bio::Model&
 /// measure, without those that are prescribed, by the trials or by the model; locked coordinates at
 /// which a trial measures the moment are held.
 /// @param allReactions  every coordinate that is locked is held
-/// @param observed      NAME=SD each; locked coordinates whose NAME.moment is observed are held
+/// @param observed      NAME or NAME=SD each; locked coordinates whose NAME.moment is observed are
+/// held
 /// @throws what readTrial and freeByDefault throw; std::invalid_argument for a prescribed
 ///   coordinate that is also free or locked, a moment measured at a free one, or one that the model
 ///   prescribes where the command takes none

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -10,21 +11,21 @@
 #include "bio/sensitivity/coupled_sensitivity.h"
 #include "bio/simulation/integrator_names.h"
 #include "bio/simulation/simulate_batch.h"
-#include "simulation/motion_weights.h"
 
 namespace bio {
 namespace {
 
-EnsembleRun notFinished(std::string outcome, double failedAt, std::size_t course) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  return {std::move(outcome),
-          failedAt,
-          none,
-          none,
-          none,
-          none,
-          none,
-          Eigen::VectorXd::Constant(static_cast<Eigen::Index>(course), none)};
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// RMS difference where both have a value; NaN if they have none.
+double rmsDifference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  double sum = 0, count = 0;
+  for (const double difference : a - b) {
+    if (std::isnan(difference)) continue;
+    sum += difference * difference;
+    ++count;
+  }
+  return std::sqrt(sum / count);
 }
 
 /// Muscles with a path point or a wrap object among the targets of these parameters.
@@ -69,24 +70,27 @@ struct SystemBatch::Draw {
 };
 
 SystemBatch::SystemBatch(const ParameterCatalogue& catalogue, const SystemOptions& system,
-                         ExcitationSignal trial, const std::string& coordinate,
-                         std::optional<MeasuredChannel> measured, std::vector<double> course,
-                         std::vector<std::size_t> selection, const SimulationOptions& options)
+                         ExcitationSignal trial, std::vector<EnsembleChannel> channels,
+                         std::vector<double> course, std::vector<std::size_t> selection,
+                         const SimulationOptions& options)
     : catalogue_(&catalogue),
       systemOptions_(system),
       trial_(std::move(trial)),
-      measured_(std::move(measured)),
+      channels_(std::move(channels)),
       course_(std::move(course)),
       selection_(std::move(selection)),
       options_(options),
       system_(catalogue.model(), system),
       driven_(drivenExcitation(trial_, muscleNames(system_), catalogue.nominal().mapping)),
       drawsEmg_(changesExcitations(catalogue, selection_)),
-      shaped_(shapedMuscles(catalogue, selection_)),
-      coordinate_(system_.skeleton().indexOf(coordinate)) {
-  if (coordinate_ < 0) {
-    throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", coordinate));
+      shaped_(shapedMuscles(catalogue, selection_)) {
+  for (const EnsembleChannel& channel : channels_) {
+    series_.push_back({channel.what, {}});  // its times are known when the motion is
+    series_.push_back({channel.what, Eigen::VectorXd::Map(course_.data(), std::ssize(course_))});
+    series_.push_back(
+        {channel.what, channel.measured ? channel.measured->times : Eigen::VectorXd()});
   }
+  (void)ObservedMotion(system_, series_);  // throws for what cannot be observed
   const SystemState start = startOf(system_, catalogue.nominal(), driven_, options_.startTime);
   const LaneJob own{&system_, &driven_, &start};
   const Trajectory motion = simulateTogether({&own, 1}, options_).front();
@@ -94,27 +98,37 @@ SystemBatch::SystemBatch(const ParameterCatalogue& catalogue, const SystemOption
     throw std::invalid_argument(
         fmt::format("the model's own motion does not reach the end of the trial: {}", motion.why));
   }
-  nominalMotion_ = motion.q.row(coordinate_);
-  nominal_ = describe(motion);
+  for (std::size_t s = 0; s < series_.size(); s += 3) {
+    series_[s].times = Eigen::VectorXd::Map(motion.time.data(), std::ssize(motion.time));
+  }
+  nominalValues_ = ObservedMotion(system_, series_).values(motion);
+  nominal_ = describe(system_, motion);
 }
 
-EnsembleRun SystemBatch::describe(const Trajectory& motion) const {
+EnsembleRun SystemBatch::notFinished(const std::string& outcome, double failedAt) const {
+  const Eigen::VectorXd course = Eigen::VectorXd::Constant(std::ssize(course_), none);
+  return {outcome, failedAt,
+          std::vector<ChannelRun>(channels_.size(), {none, none, none, none, none, course})};
+}
+
+EnsembleRun SystemBatch::describe(const MusculoskeletalSystem& system,
+                                  const Trajectory& motion) const {
   if (motion.outcome != Outcome::completed) {
-    return notFinished(name(motion.outcome), motion.failedAt, course_.size());
+    return notFinished(name(motion.outcome), motion.failedAt);
   }
-  EnsembleRun run =
-      notFinished(name(motion.outcome), std::numeric_limits<double>::quiet_NaN(), course_.size());
-  const auto q = motion.q.row(coordinate_);
-  if (measured_) run.rmsError = compareWithMeasured(system_, motion, *measured_).rms;
-  run.rmsFromNominal =
-      std::sqrt((q - nominalMotion_).squaredNorm() / static_cast<double>(q.size()));
-  run.last = q[q.size() - 1];
-  run.lowest = q.minCoeff();
-  run.highest = q.maxCoeff();
-  for (std::size_t i = 0; i < course_.size(); ++i) {
-    if (const auto w = weightsAt(motion.time, course_[i])) {
-      run.atCourse[static_cast<Eigen::Index>(i)] = w->value(q, motion.qDot.row(coordinate_));
-    }
+  const Eigen::VectorXd values = ObservedMotion(system, series_).values(motion);
+  EnsembleRun run{name(motion.outcome), none, {}};
+  Eigen::Index at = 0;
+  for (const EnsembleChannel& channel : channels_) {
+    const auto rows = series_.front().times.size(), points = std::ssize(course_);
+    const Eigen::VectorXd measured =
+        channel.measured ? channel.measured->values : Eigen::VectorXd();
+    const auto all = values.segment(at, rows);
+    run.channels.push_back(
+        {rmsDifference(values.segment(at + rows + points, measured.size()), measured),
+         rmsDifference(all, nominalValues_.segment(at, rows)), all[rows - 1], all.minCoeff(),
+         all.maxCoeff(), values.segment(at + rows, points)});
+    at += rows + points + measured.size();
   }
   return run;
 }
@@ -144,9 +158,7 @@ EnsembleRun SystemBatch::run(const Eigen::VectorXd& theta) const {
 }
 
 std::vector<EnsembleRun> SystemBatch::run(std::span<const Eigen::VectorXd> thetas) const {
-  std::vector<EnsembleRun> runs(
-      thetas.size(),
-      notFinished("impossible", std::numeric_limits<double>::quiet_NaN(), course_.size()));
+  std::vector<EnsembleRun> runs(thetas.size(), notFinished("impossible", none));
   std::vector<Draw> draws;
   std::vector<LaneJob> jobs;
   std::vector<std::size_t> places;
@@ -160,7 +172,8 @@ std::vector<EnsembleRun> SystemBatch::run(std::span<const Eigen::VectorXd> theta
   }
   const auto simulate = [&](std::size_t first, std::size_t count) {
     const auto motions = simulateTogether({jobs.data() + first, count}, options_);
-    for (std::size_t k = 0; k < count; ++k) runs[places[first + k]] = describe(motions[k]);
+    for (std::size_t k = 0; k < count; ++k)
+      runs[places[first + k]] = describe(*jobs[first + k].system, motions[k]);
   };
   try {
     simulate(0, jobs.size());

@@ -14,12 +14,12 @@ namespace bio {
 
 const std::vector<EnsembleOutput>& ensembleOutputs() {
   static const std::vector<EnsembleOutput> list = {
-      {"rms_error", "RMS error", [](const EnsembleRun& r) { return r.rmsError; }},
+      {"rms_error", "RMS error", [](const ChannelRun& r) { return r.rmsError; }},
       {"rms_from_nominal", "RMS difference from nominal",
-       [](const EnsembleRun& r) { return r.rmsFromNominal; }},
-      {"final", "final value", [](const EnsembleRun& r) { return r.last; }},
-      {"min", "smallest value", [](const EnsembleRun& r) { return r.lowest; }},
-      {"max", "largest value", [](const EnsembleRun& r) { return r.highest; }}};
+       [](const ChannelRun& r) { return r.rmsFromNominal; }},
+      {"final", "final value", [](const ChannelRun& r) { return r.last; }},
+      {"min", "smallest value", [](const ChannelRun& r) { return r.lowest; }},
+      {"max", "largest value", [](const ChannelRun& r) { return r.highest; }}};
   return list;
 }
 

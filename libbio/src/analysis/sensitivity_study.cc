@@ -52,12 +52,7 @@ std::vector<ChannelCandidate> observedChannels(
     const MusculoskeletalSystem& system) {
   std::vector<ChannelCandidate> channels;
   for (const auto& [name, sd] : named) {
-    ChannelCandidate channel{{Observable::Kind::coordinate, name, 0}, sd};
-    const bool isCoordinate = coordinateOrNull(model, name) != nullptr;
-    if (!isCoordinate && !readObservable(name, model, channel.what)) {
-      throw std::invalid_argument(
-          fmt::format("observe: '{}' is nothing that can be measured of this model", name));
-    }
+    ChannelCandidate channel{observableNamed(name, model), sd};
     if (!(sd > 0 && std::isfinite(sd))) {
       throw std::invalid_argument(
           fmt::format("observe: noise of '{}' = {}, must be > 0 and finite", name, sd));

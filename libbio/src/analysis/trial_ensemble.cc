@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "bio/analysis/ensemble_statistics.h"
@@ -14,16 +15,32 @@
 namespace bio {
 namespace {
 
-const Coordinate& observedCoordinate(const MusculoskeletalSystem& system) {
-  if (system.skeleton().coordinates().empty()) {
-    throw std::invalid_argument("no coordinate is free, must have one");
+std::vector<EnsembleChannel> observedChannels(const Trial& trial, const Model& model,
+                                              const MusculoskeletalSystem& system,
+                                              const TrialEnsembleOptions& asked) {
+  std::vector<Observable> observed;
+  for (const std::string& name : asked.observe) {
+    observed.push_back(observableNamed(name, model));
+    if (std::find(observed.begin(), observed.end() - 1, observed.back()) != observed.end() - 1) {
+      throw std::invalid_argument(fmt::format("observe: '{}' is given twice", name));
+    }
   }
-  return system.skeleton().coordinates().front();
-}
-
-std::optional<MeasuredChannel> measurementOf(const Trial& trial, const std::string& coordinate) {
-  const MeasuredChannel* measured = trial.measurementOf(ofCoordinate(coordinate));
-  return measured ? std::optional(*measured) : std::nullopt;
+  const std::vector<Coordinate>& coordinates = system.skeleton().coordinates();
+  for (std::size_t i = 0; asked.observe.empty() && i < coordinates.size(); ++i) {
+    if (system.isPrescribed(static_cast<int>(i))) continue;
+    observed.push_back(ofCoordinate(coordinates[i].name));
+  }
+  if (observed.empty()) {
+    throw std::invalid_argument(
+        fmt::format("no coordinate is free to be observed: {}observe must name what is",
+                    asked.laws.optionPrefix));
+  }
+  std::vector<EnsembleChannel> channels;
+  for (const Observable& what : observed) {
+    const MeasuredChannel* measured = trial.measurementOf(what);
+    channels.push_back({what, measured ? std::optional(*measured) : std::nullopt});
+  }
+  return channels;
 }
 
 }  // namespace
@@ -31,17 +48,16 @@ std::optional<MeasuredChannel> measurementOf(const Trial& trial, const std::stri
 TrialEnsemble::TrialEnsemble(const Model& model, const MusculoskeletalSystem& system,
                              const SystemOptions& options, const Trial& trial,
                              const StartPoint& start, const TrialEnsembleOptions& asked)
-    : coordinate_(observedCoordinate(system)),
-      measured_(measurementOf(trial, coordinate_.name)),
-      catalogue_(model, system, start),
+    : catalogue_(model, system, start),
       laws_(parameterLaws(catalogue_, asked.laws)),
       sobol_(asked.sobol),
       draws_(asked.draws) {
-  check(trial, asked);
+  std::vector<EnsembleChannel> channels = observedChannels(trial, model, system, asked);
+  check(trial, channels, asked);
   const RecordedTrial recorded = recordedTrial(trial, system, asked.simulation);
   const SimulationOptions& simulation = recorded.simulation;
   batch_ = std::make_unique<const SystemBatch>(
-      catalogue_, options, recorded.excitation, coordinate_.name, measured_,
+      catalogue_, options, recorded.excitation, std::move(channels),
       bandTimes(simulation.startTime, simulation.duration, asked.bandPoints), laws_.selection,
       simulation);
   const Trajectory motion =
@@ -50,7 +66,8 @@ TrialEnsemble::TrialEnsemble(const Model& model, const MusculoskeletalSystem& sy
     remark_ = "with the model's own parameters, " + left->what;
 }
 
-void TrialEnsemble::check(const Trial& trial, const TrialEnsembleOptions& asked) const {
+void TrialEnsemble::check(const Trial& trial, const std::vector<EnsembleChannel>& channels,
+                          const TrialEnsembleOptions& asked) const {
   const std::string& prefix = asked.laws.optionPrefix;
   const auto refuse = [](const std::string& why) { throw std::invalid_argument(why); };
   if (asked.draws < 1 || asked.draws > 10000000) {
@@ -67,9 +84,10 @@ void TrialEnsemble::check(const Trial& trial, const TrialEnsembleOptions& asked)
                        prefix, laws_.selection.size(), mostGlobalParameters));
   }
   if (asked.draws < 2) refuse(fmt::format("{0}sobol: {0}draws must be at least 2", prefix));
-  if (asked.output == "rms_error" && !measured_) {
+  for (const EnsembleChannel& channel : channels) {
+    if (asked.output != "rms_error" || channel.measured) continue;
     refuse(fmt::format("{}output rms_error: {} has no measured {}", prefix, trial.file,
-                       coordinate_.name));
+                       nameOf(channel.what)));
   }
 }
 

@@ -1,7 +1,10 @@
 #include "bio/tables/observable.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 namespace bio {
 namespace {
@@ -88,6 +91,13 @@ bool readObservable(const std::string& column, const Model& model, Observable& f
     return true;
   }
   return false;
+}
+
+Observable observableNamed(const std::string& name, const Model& model) {
+  Observable found = ofCoordinate(name);
+  if (coordinateOrNull(model, name) || readObservable(name, model, found)) return found;
+  throw std::invalid_argument(
+      fmt::format("observe: '{}' is nothing that can be measured of this model", name));
 }
 
 }  // namespace bio

@@ -1359,6 +1359,17 @@ class SobolIndices:
     undefined: int
 
 @type_check_only
+class EnsembleChannel:
+    name: str
+    unit: str
+    outputs: dict[str, _Array]
+    spread: dict[str, OutputSpread]
+    course: _Array
+    band: PercentileBand
+    sobol: SobolIndices | None
+    left_range: int
+
+@type_check_only
 class EnsembleResult:
     coordinate: str
     laws: list[ParameterLaw]
@@ -1372,6 +1383,7 @@ class EnsembleResult:
     band: PercentileBand
     sobol: SobolIndices | None
     left_range: int
+    channels: list[EnsembleChannel]
     warnings: list[str]
 
 def ensemble(
@@ -1389,6 +1401,7 @@ def ensemble(
     covariance: tuple[Sequence[str], ArrayLike] | None = None,
     sobol: bool = False,
     output: Literal["rms_error", "rms_from_nominal", "final", "min", "max"] = "final",
+    observe: Sequence[str] = [],
     band_points: int = 46,
     threads: int = 1,
     initial: dict[str, float] = {},
@@ -1430,6 +1443,9 @@ def ensemble(
         True: simulate the points of Saltelli's scheme and compute Sobol's indices.
     output : {'rms_error', 'rms_from_nominal', 'final', 'min', 'max'}
         The output whose variance sobol decomposes.
+    observe : list of str
+        Observed channels by the names that they have as columns of a trial: 'elbow_flexion',
+        'elbow_flexion.moment', 'BRA.fiber_length', ... Default: all free coordinates.
     band_points : int
         Number of times in the percentile band >= 2.
     threads : int
@@ -1437,14 +1453,15 @@ def ensemble(
     initial : dict
         {coordinate: initial value [rad] or [m]}, at rest. Default: as in replay.
     coordinate : str or list of str
-        The free coordinate, or several, of which the first is observed. Default: as in replay.
+        The free coordinate, or several. Default: as in replay.
     lock, integrator, step
         As in replay, but the default step is 0.01 s (rk4: 0.0002 s).
 
     Returns
     -------
     coordinate : str
-        The observed one.
+        Name of the first observed channel, to which outputs, spread, course, band, sobol and left_range
+        belong.
     laws : list
         Distribution of each drawn parameter, with
 
@@ -1461,16 +1478,16 @@ def ensemble(
     failed_at : array, runs
         Time at which the run ended early [s]; NaN if it did not, or never began.
     outputs : dict
-        {output: array, runs} [rad] or [m], NaN unless the run reached the end: 'rms_error' against the
-        measurement (NaN without one), 'rms_from_nominal' (RMS difference from the run with the model's
-        own parameters), 'final', 'min' and 'max' (last, smallest and largest value).
+        {output: array, runs} [the channel's unit], NaN unless the run reached the end: 'rms_error'
+        against the measurement (NaN without one), 'rms_from_nominal' (RMS difference from the run with
+        the model's own parameters), 'final', 'min' and 'max' (last, smallest and largest value).
     spread : dict
         {output: statistics over the runs that reached the end}, each with nominal, mean, sd (sample
         standard deviation), p5, p50, p95 (percentiles).
     time : array, times
         Equally spaced over the trial [s].
     course : array, runs x times
-        The coordinate [rad] or [m]; NaN unless the run reached the end.
+        The channel; NaN unless the run reached the end.
     band : SimpleNamespace
         nominal, mean, p5, p50, p95 : array, times
             The model's own motion; mean and percentiles over the runs that reached the end.
@@ -1481,11 +1498,14 @@ def ensemble(
         first_interval, total_interval : array, parameters x 2
             95 % intervals by resampling the base points.
         variance : float
-            Of the output [rad^2] or [m^2].
+            Of the output [square of the channel's unit].
         undefined : int
             Runs that did not reach the end; their points are left out.
     left_range : int
-        Runs in which the coordinate leaves its range by more than a tenth of it.
+        Runs in which the coordinate leaves its range by more than a tenth of it; 0 for other channels.
+    channels : list
+        All observed channels, each with name, unit ('rad', 'm', 'N·m', ..., '' for a pure number) and the
+        same outputs, spread, course, band, sobol and left_range.
     warnings : list of str
         Whether the model's own motion leaves the range in which the model is valid.
 
@@ -1494,8 +1514,9 @@ def ensemble(
     ValueError
         For an unknown parameter (with the nearest names), a prior or bounds of one that is not drawn, a
         distribution or covariance that breaks a rule, more than 32 parameters with sobol, an output
-        'rms_error' without a measurement, a trial with known_mass_in_hand or known_arm_turn, or a
-        model whose own motion does not reach the end of the trial.
+        'rms_error' without a measurement, a channel that cannot be observed or is given twice, a trial
+        with known_mass_in_hand or known_arm_turn, or a model whose own motion does not reach the end of
+        the trial.
     """
 
 # Comparisons --------------------------------------------------------------------------------------

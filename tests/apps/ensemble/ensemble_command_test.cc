@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "apps/ensemble/ensemble_runs.h"
 
@@ -64,6 +66,91 @@ TEST(EnsembleCommand, ADrawIsWhatASweepOfItsValueGives) {
             0);
   const auto run = summaryIn(other)["sweep"]["runs"][0];
   EXPECT_NEAR(run["rms_change_deg"].get<double>(), std::stod(row[4]), 1e-7);
+}
+
+/// Columns of the first line, and of the last as numbers.
+std::map<std::string, double> lastRow(const std::string& file) {
+  const auto lines = linesOf(contentOf(file));
+  const auto names = cells(lines.front()), values = cells(lines.back());
+  std::map<std::string, double> row;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i < values.size() && !values[i].empty() && values[i] != "ok") {
+      row[names[i]] = std::stod(values[i]);
+    }
+  }
+  return row;
+}
+
+TEST(EnsembleCommand, ObservesSeveralJointsAndChannelsByName) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string();
+  const ProgramResult result =
+      runEnsemble(out, {"--draws", "8", "--parameters", "hand.mass", "--coordinate",
+                        "elbow_flexion", "--coordinate", "shoulder_elv", "--observe",
+                        "elbow_flexion=0.5deg,shoulder_elv,elbow_flexion.speed", "--observe",
+                        "BRA.activation", "--sobol", "--output", "max", "--band-points", "5"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("Median of the final shoulder_elv: "));
+  const auto draw = lastRow(out + "/draws.csv"), band = lastRow(out + "/band.csv");
+  const auto json = summaryIn(out);
+  const std::map<std::string, std::string> units = {{"elbow_flexion", "deg"},
+                                                    {"shoulder_elv", "deg"},
+                                                    {"elbow_flexion.speed", "deg/s"},
+                                                    {"BRA.activation", ""}};
+  EXPECT_EQ(json["channels"].size(), units.size());
+  const std::string report = contentOf(out + "/report.html");
+  for (const auto& [name, unit] : units) {
+    const std::string end = unit.empty() ? "" : " [" + unit + "]";
+    EXPECT_EQ(json["channels"][name]["unit"], unit);
+    for (const char* output : {"rms_from_nominal", "final", "min", "max"}) {
+      EXPECT_TRUE(draw.contains(name + "." + output + end)) << name << output;
+    }
+    EXPECT_LE(draw.at(name + ".min" + end), draw.at(name + ".final" + end));
+    EXPECT_LE(band.at(name + ".p5" + end), band.at(name + ".p95" + end));
+    EXPECT_NEAR(band.at(name + ".p50" + end), json["channels"][name]["final"]["p50"], 1e-3);
+    EXPECT_EQ(json["channels"][name]["sobol"]["output"], "max");
+    EXPECT_THAT(report, HasSubstr(name + " over the ensemble"));
+    EXPECT_THAT(report, HasSubstr("Outputs of " + name));
+    EXPECT_THAT(contentOf(out + "/sobol.csv"), HasSubstr("\n" + name + ".max,hand.mass,"));
+  }
+  EXPECT_TRUE(draw.contains("elbow_flexion.rms_error [deg]"));
+  EXPECT_FALSE(draw.contains("shoulder_elv.rms_error [deg]"));  // it was not measured
+  EXPECT_EQ(json["final_deg"], json["channels"]["elbow_flexion"]["final"]);
+  EXPECT_EQ(json["sobol"], json["channels"]["elbow_flexion"]["sobol"]);
+}
+
+// The moment of the model's own motion is what keeps the elbow on its course in a replay.
+TEST(EnsembleCommand, APrescribedElbowsMomentIsThatOfReplay) {
+  const ScratchFolder scratch;
+  const std::string out = (scratch / "out").string(), replay = (scratch / "replay").string();
+  const Words held = {"--prescribe", "elbow_flexion", "--prescribe-cutoff", "6"};
+  const ProgramResult result =
+      runEnsemble(out, with(held, {"--draws", "6", "--parameters", "hand.mass", "--observe",
+                                   "elbow_flexion.moment", "--band-points", "451"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  ASSERT_EQ(runFisherHill(with({"replay", model, slow, "--out", replay}, held)).status, 0);
+  std::vector<double> moments;
+  std::size_t column = 0;
+  for (std::string line : linesOf(contentOf(replay + "/forces.sto"))) {
+    std::replace(line.begin(), line.end(), '\t', ',');
+    const auto row = cells(line);
+    if (column > 0) moments.push_back(-std::stod(row.at(column)));
+    const auto name = std::find(row.begin(), row.end(), "elbow_flexion.reaction");
+    if (name != row.end()) column = static_cast<std::size_t>(name - row.begin());
+  }
+  const auto lines = linesOf(contentOf(out + "/band.csv"));
+  ASSERT_EQ(moments.size(), 451u);
+  ASSERT_EQ(lines.size(), 452u);
+  EXPECT_EQ(cells(lines[0])[1], "elbow_flexion.moment.nominal [N·m]");
+  for (std::size_t k = 0; k < 451; ++k) {
+    EXPECT_NEAR(std::stod(cells(lines[k + 1])[1]), moments[k], 1e-6);
+  }
+  const auto json = summaryIn(out);
+  EXPECT_FALSE(json.contains("final_deg"));
+  const auto moment = json["channels"]["elbow_flexion.moment"];
+  EXPECT_EQ(moment["unit"], "N·m");
+  EXPECT_NEAR(moment["max"]["nominal"], *std::max_element(moments.begin(), moments.end()), 1e-6);
+  EXPECT_GT(moment["max"]["sd"].get<double>(), 0.01);  // a heavier hand weighs more
 }
 
 TEST(EnsembleCommand, SameSeedSameBytesWhateverTheThreadsAndOtherSeedOthers) {

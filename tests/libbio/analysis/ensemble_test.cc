@@ -16,13 +16,9 @@ using fixtures::ShippedElbow;
 const std::vector<double> course = {0, 0.25, 2.5};
 
 SystemBatch ensembleOn(const ShippedElbow& elbow, const std::vector<std::size_t>& selection) {
-  return {elbow.catalogue,
-          ShippedElbow::options(),
-          elbow.excitation,
-          "elbow_flexion",
-          elbow.trial.measured.front(),
-          course,
-          selection,
+  return {elbow.catalogue,  ShippedElbow::options(),
+          elbow.excitation, {{ofCoordinate("elbow_flexion"), elbow.trial.measured.front()}},
+          course,           selection,
           forSeconds(2.5)};
 }
 
@@ -48,10 +44,11 @@ TEST(SystemBatch, RunsAreThoseOfArmsCompiledFromNothing) {
         theta[static_cast<Eigen::Index>(i)] =
             std::clamp(theta[static_cast<Eigen::Index>(i)], p.lower, p.upper);
       }
-      const EnsembleRun run = ensemble.run(theta);
+      const EnsembleRun drawn = ensemble.run(theta);
       const Trajectory motion = experiment.simulate(theta);
-      ASSERT_EQ(run.outcome, "ok");
-      EXPECT_TRUE(std::isnan(run.failedAt));
+      ASSERT_EQ(drawn.outcome, "ok");
+      EXPECT_TRUE(std::isnan(drawn.failedAt));
+      const ChannelRun& run = drawn.channels.at(0);
       EXPECT_NEAR(run.last, motion.q(0, motion.q.cols() - 1), 1e-9);
       EXPECT_NEAR(run.lowest, motion.q.minCoeff(), 1e-9);
       EXPECT_NEAR(run.highest, motion.q.maxCoeff(), 1e-9);
@@ -83,18 +80,18 @@ TEST(SystemBatch, ARunDoesNotDependOnTheOthers) {
     if (i == 3) continue;
     const EnsembleRun alone = ensemble.run(thetas[i]);
     EXPECT_EQ(together[i].outcome, "ok");
-    EXPECT_EQ(together[i].last, alone.last);
-    EXPECT_EQ(together[i].rmsError, alone.rmsError);
-    EXPECT_EQ(together[i].atCourse, alone.atCourse);
+    EXPECT_EQ(together[i].channels[0].last, alone.channels[0].last);
+    EXPECT_EQ(together[i].channels[0].rmsError, alone.channels[0].rmsError);
+    EXPECT_EQ(together[i].channels[0].atCourse, alone.channels[0].atCourse);
   }
-  EXPECT_NE(together[0].last, together[1].last);
+  EXPECT_NE(together[0].channels[0].last, together[1].channels[0].last);
 }
 
 TEST(SystemBatch, TheNominalRunIsNoDistanceFromItself) {
   const ShippedElbow elbow;
   const SystemBatch ensemble = ensembleOn(elbow, elbow.catalogue.select({"TRI.radius"}));
-  EXPECT_EQ(ensemble.nominal().rmsFromNominal, 0);
-  EXPECT_GT(ensemble.nominal().rmsError, 0);
+  EXPECT_EQ(ensemble.nominal().channels[0].rmsFromNominal, 0);
+  EXPECT_GT(ensemble.nominal().channels[0].rmsError, 0);
 }
 
 TEST(SystemBatch, WhatCannotBeSimulatedIsAnOutcome) {
@@ -102,23 +99,24 @@ TEST(SystemBatch, WhatCannotBeSimulatedIsAnOutcome) {
   const SystemBatch ensemble = ensembleOn(elbow, elbow.catalogue.select({"TRI.radius"}));
   const EnsembleRun run = ensemble.run(Eigen::VectorXd::Constant(1, -0.01));
   EXPECT_EQ(run.outcome, "impossible");
-  EXPECT_TRUE(std::isnan(run.last));
-  EXPECT_EQ(run.atCourse.size(), 3);
-  EXPECT_FALSE(run.atCourse.array().isFinite().any());
+  const ChannelRun& none = run.channels.at(0);
+  EXPECT_TRUE(std::isnan(none.last));
+  EXPECT_EQ(none.atCourse.size(), 3);
+  EXPECT_FALSE(none.atCourse.array().isFinite().any());
   support::throwsSaying([&] { (void)ensemble.run(Eigen::VectorXd::Zero(2)); },
                         "2 values for 1 parameters");
 }
 
-TEST(SystemBatch, RefusesACoordinateThatIsNotFreeAndAModelThatDoesNotFinish) {
+TEST(SystemBatch, RefusesAChannelThatIsNotThereAndAModelThatDoesNotFinish) {
   const ShippedElbow elbow;
   const auto make = [&](const std::string& coordinate, const SimulationOptions& options) {
     return [&elbow, coordinate, options] {
-      (void)SystemBatch(elbow.catalogue, ShippedElbow::options(), elbow.excitation, coordinate, {},
-                        course, {}, options);
+      (void)SystemBatch(elbow.catalogue, ShippedElbow::options(), elbow.excitation,
+                        {{ofCoordinate(coordinate), {}}}, course, {}, options);
     };
   };
   support::throwsSaying(make("pro_sup", forSeconds(1)),
-                        "observed coordinate 'pro_sup' is not free");
+                        "measured 'pro_sup': its coordinate must be free");
   SimulationOptions impatient = forSeconds(1);
   impatient.maxIterations = 1;
   impatient.maxHalvings = 0;

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "bio/analysis/replay.h"
 #include "info/probability/random_stream.h"
 #include "support/shipped_elbow.h"
@@ -48,7 +51,7 @@ TEST(TrialEnsemble, RunsAreReplaysOfTheModelWithTheDrawnParameters) {
   const DrawnElbow drawn(drawing({"hand.mass"}));
   const ShippedElbow& elbow = DrawnElbow::elbow();
   const Eigen::VectorXd theta = drawn.ensemble.draw(1, 5);
-  const EnsembleRun run = drawn.ensemble.run(std::span(&theta, 1)).front();
+  const ChannelRun run = drawn.ensemble.run(std::span(&theta, 1)).front().channels.at(0);
   Model model = elbow.catalogue.at({elbow.catalogue.find("hand.mass")}, theta).model;
   const MusculoskeletalSystem system(model, ShippedElbow::options());
   SimulationOptions options;
@@ -58,6 +61,119 @@ TEST(TrialEnsemble, RunsAreReplaysOfTheModelWithTheDrawnParameters) {
   EXPECT_NEAR(run.rmsError, replay.errors.front().second.rms, 1e-9);
   EXPECT_EQ(drawn.ensemble.course().back(), elbow.trial.times[0] + elbow.trial.duration());
   EXPECT_NEAR(run.atCourse[2], run.last, 1e-9);
+}
+
+/// ElbowRoles of the coordinates of elbow8 in the shipped trial, and what is observed of them.
+struct ElbowRoles {
+  const char* name;
+  std::vector<std::string> coordinates, prescribed, observed;
+};
+struct ObservedElbow {
+  explicit ObservedElbow(const ElbowRoles& roles)
+      : options{{roles.coordinates, {}}, {}, {}, false, roles.prescribed},
+        trial(readTrial(ShippedElbow::root() + "/emg_data/curl_slow.sto", model,
+                        {.prescribed = roles.prescribed})),
+        system(model, options) {}
+  TrialReplay replay(const Model& drawn) const {
+    const MusculoskeletalSystem own(drawn, options);
+    return replayTrial(own, trial, {}, beginningOf(trial, drawn, own, {}));
+  }
+  TrialEnsemble ensemble(const TrialEnsembleOptions& asked) const {
+    return {model, system, options, trial, beginningOf(trial, model, system, {}).point, asked};
+  }
+  Model model = DrawnElbow::elbow().model;
+  SystemOptions options;
+  Trial trial;
+  MusculoskeletalSystem system;
+};
+
+/// NaN: it was not measured.
+double rmsErrorIn(const TrialReplay& replay, const Observable& what) {
+  for (const auto& [name, error] : replay.errors)
+    if (what == ofCoordinate(name)) return error.rms;
+  for (const ChannelError& channel : replay.channelErrors)
+    if (what == channel.what) return channel.error.rms;
+  return std::nan("");
+}
+
+// The second way compiles each drawn model anew and replays the trial alone.
+TEST(TrialEnsemble, ChannelsAreThoseOfSingleReplaysOfTheDrawnModels) {
+  for (const ElbowRoles& roles : {ElbowRoles{"two free joints",
+                                             {"shoulder_elv", "elbow_flexion"},
+                                             {},
+                                             {"shoulder_elv", "elbow_flexion",
+                                              "elbow_flexion.speed", "BIClong.tendon_force"}},
+                                  ElbowRoles{"a dynamometer moves the elbow",
+                                             {"elbow_flexion"},
+                                             {"elbow_flexion"},
+                                             {"elbow_flexion.moment", "BRA.fiber_length"}},
+                                  ElbowRoles{"a free shoulder, a prescribed elbow",
+                                             {"shoulder_elv", "elbow_flexion"},
+                                             {"elbow_flexion"},
+                                             {"shoulder_elv", "elbow_flexion.moment"}}}) {
+    SCOPED_TRACE(roles.name);
+    ObservedElbow elbow(roles);
+    const Observable last = observableNamed(roles.observed.back(), elbow.model);
+    elbow.trial.measured.push_back(
+        {last, elbow.trial.times.segment(20, 60), Eigen::VectorXd::LinSpaced(60, 1, 9)});
+    TrialEnsembleOptions options = drawing({"hand.mass", "TRI.radius", "BRA.tendon_slack_length"});
+    options.observe = roles.observed;
+    const TrialEnsemble ensemble = elbow.ensemble(options);
+    const TrialReplay nominal = elbow.replay(elbow.model);
+    const Eigen::VectorXd times =
+        Eigen::VectorXd::Map(nominal.motion.time.data(), std::ssize(nominal.motion.time));
+    std::vector<Eigen::VectorXd> thetas;
+    for (std::uint64_t i = 0; i < ensemble.count(); ++i) thetas.push_back(ensemble.draw(i, 3));
+    const std::vector<EnsembleRun> runs = ensemble.run(thetas);
+    int finished = 0, measured = 0;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (runs[i].outcome != "ok") continue;
+      ++finished;
+      const Model model =
+          ParameterCatalogue(elbow.model, elbow.system,
+                             beginningOf(elbow.trial, elbow.model, elbow.system, {}).point)
+              .at(ensemble.laws().selection, thetas[i])
+              .model;
+      const MusculoskeletalSystem system(model, elbow.options);
+      const TrialReplay replay = elbow.replay(model);
+      ASSERT_EQ(runs[i].channels.size(), roles.observed.size());
+      for (std::size_t c = 0; c < roles.observed.size(); ++c) {
+        SCOPED_TRACE(roles.observed[c]);
+        const ChannelRun& run = runs[i].channels[c];
+        const Observable& what = ensemble.channels()[c].what;
+        const auto all = [&](const MusculoskeletalSystem& of, const Trajectory& motion) {
+          return ObservedMotion(of, {{what, times}}).values(motion);
+        };
+        const Eigen::VectorXd course = all(system, replay.motion);
+        const Eigen::VectorXd change = course - all(elbow.system, nominal.motion);
+        const double least = 1e-12 * (1 + course.cwiseAbs().maxCoeff());
+        EXPECT_NEAR(run.last, course[course.size() - 1], least);
+        EXPECT_NEAR(run.lowest, course.minCoeff(), least);
+        EXPECT_NEAR(run.highest, course.maxCoeff(), least);
+        EXPECT_NEAR(run.atCourse[0], course[0], least);
+        EXPECT_NEAR(run.atCourse[1], course[course.size() / 2], least);
+        EXPECT_NEAR(run.atCourse[2], run.last, least);
+        EXPECT_NEAR(run.rmsFromNominal, std::sqrt(change.array().square().mean()), least);
+        const double error = rmsErrorIn(replay, what);
+        EXPECT_EQ(std::isnan(run.rmsError), std::isnan(error));
+        if (std::isnan(error)) continue;
+        ++measured;
+        EXPECT_NEAR(run.rmsError, error, least);
+      }
+    }
+    EXPECT_GE(finished, 3);
+    EXPECT_GE(measured, finished);
+  }
+}
+
+TEST(TrialEnsemble, ObservesAllFreeCoordinatesUnlessToldOtherwise) {
+  const ObservedElbow elbow(
+      {"", {"shoulder_elv", "elbow_flexion", "pro_sup"}, {"elbow_flexion"}, {}});
+  const TrialEnsemble ensemble = elbow.ensemble(drawing({"hand.mass"}));
+  ASSERT_EQ(ensemble.channels().size(), 2u);
+  EXPECT_EQ(ensemble.channels()[0].what, ofCoordinate("shoulder_elv"));
+  EXPECT_EQ(ensemble.channels()[1].what, ofCoordinate("pro_sup"));
+  EXPECT_FALSE(ensemble.channels()[0].measured);
 }
 
 TEST(TrialEnsemble, SobolDrawsChangeOneParameterAtATime) {
@@ -92,11 +208,24 @@ TEST(TrialEnsemble, RefusesInOneLine) {
   Trial bare = DrawnElbow::elbow().trial;
   bare.measured.clear();
   refused(options, "has no measured elbow_flexion", bare);
+  options.observe = {"elbow_flexion", "elbow_flexion.speed"};
+  refused(options, "has no measured elbow_flexion.speed");
+  options.observe = {"elbow_flexion", "elbow_flexion"};
+  refused(options, "observe: 'elbow_flexion' is given twice");
+  options.observe = {"elbow_flexion.angle"};
+  refused(options, "observe: 'elbow_flexion.angle' is nothing that can be measured of this model");
+  options.observe = {"elbow_flexion.moment"};
+  options.output = "final";
+  refused(options, "its coordinate must be prescribed or locked");
+  options.observe = {};
   options.laws.names = {"all"};
   refused(options, "parameters, at most 32; choose them with parameters");
   options.laws.names = {};
   options.laws.covariance = {{"hand.mass"}, Eigen::MatrixXd::Constant(1, 1, 1e-4)};
   refused(options, "covariance cannot be combined with sobol");
+  const ObservedElbow held({"", {"elbow_flexion"}, {"elbow_flexion"}, {}});
+  throwsSaying([&] { (void)held.ensemble(drawing({"hand.mass"})); },
+               "no coordinate is free to be observed: observe must name what is");
 }
 
 }  // namespace

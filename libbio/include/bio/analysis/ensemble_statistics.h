@@ -10,11 +10,11 @@
 /// Statistics of the runs of an ensemble.
 namespace bio {
 
-/// A scalar output of every run.
+/// A scalar output of every channel of every run.
 struct EnsembleOutput {
-  std::string name;                  ///< "rms_error"
-  std::string words;                 ///< "RMS error"
-  double (*of)(const EnsembleRun&);  ///< [rad] or [m]; NaN unless the run reached the end
+  std::string name;                 ///< "rms_error"
+  std::string words;                ///< "RMS error"
+  double (*of)(const ChannelRun&);  ///< in the channel's unit; NaN unless the run reached the end
 };
 /// rms_error, rms_from_nominal, final, min, max.
 const std::vector<EnsembleOutput>& ensembleOutputs();

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,7 +17,10 @@ struct TrialEnsembleOptions {
   int draws = 1000;              ///< of parameters, 1 to 10⁷; with sobol: base points ≥ 2
   bool sobol = false;            ///< draws are the points of Saltelli's scheme, for Sobol's indices
   std::string output = "final";  ///< whose variance sobol decomposes (ensembleOutputs())
-  int bandPoints = 46;           ///< times of the percentile band, 2 to 1000
+  /// Observed channels by the names that they have as columns of a trial; empty: all free
+  /// coordinates.
+  std::vector<std::string> observe = {};
+  int bandPoints = 46;  ///< times of the percentile band, 2 to 1000
   /// Integrator and step; times, external force and prescribed motion are those of the trial.
   SimulationOptions simulation = {};
 };
@@ -33,19 +35,18 @@ class TrialEnsemble {
  public:
   /// @param system  made of `model` with `options`
   /// @param start of the model's own motion, as beginningOf() has it
-  /// @throws std::invalid_argument for options out of range, an output that needs a measurement
-  ///   that the trial has not, more than 32 parameters with sobol, a covariance with it, and what
-  ///   parameterLaws and SystemBatch throw
+  /// @throws std::invalid_argument for options out of range, a channel given twice, no channel, an
+  ///   output that needs a measurement that the trial has not, more than 32 parameters with sobol,
+  ///   a covariance with it, and what observableNamed, parameterLaws and SystemBatch throw
   TrialEnsemble(const Model& model, const MusculoskeletalSystem& system,
                 const SystemOptions& options, const Trial& trial, const StartPoint& start,
                 const TrialEnsembleOptions& asked);
   TrialEnsemble(const TrialEnsemble&) = delete;  // the batch points into the catalogue
   TrialEnsemble& operator=(const TrialEnsemble&) = delete;
 
+  const Model& model() const { return catalogue_.model(); }
   const ParameterLaws& laws() const { return laws_; }
-  /// The first free coordinate, which is observed.
-  const Coordinate& coordinate() const { return coordinate_; }
-  const std::optional<MeasuredChannel>& measured() const { return measured_; }
+  const std::vector<EnsembleChannel>& channels() const { return batch_->channels(); }
   /// Times of the percentile band [s].
   const std::vector<double>& course() const { return batch_->course(); }
   /// The run with the model's own parameters.
@@ -63,10 +64,9 @@ class TrialEnsemble {
   }
 
  private:
-  void check(const Trial& trial, const TrialEnsembleOptions& asked) const;
+  void check(const Trial& trial, const std::vector<EnsembleChannel>& channels,
+             const TrialEnsembleOptions& asked) const;
 
-  Coordinate coordinate_;
-  std::optional<MeasuredChannel> measured_;
   ParameterCatalogue catalogue_;
   ParameterLaws laws_;
   bool sobol_;

@@ -55,6 +55,10 @@ std::string unitOf(const Observable& observable, const Model& model);
 /// @returns whether there is one
 bool readObservable(const std::string& column, const Model& model, Observable& found);
 
+/// The observable that a name stands for, a coordinate among them.
+/// @throws std::invalid_argument for a name of nothing that can be measured of the model
+Observable observableNamed(const std::string& name, const Model& model);
+
 /// A measured course; possibly sampled less often than the excitations.
 struct MeasuredChannel {
   Observable what;
