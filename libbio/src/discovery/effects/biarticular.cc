@@ -41,8 +41,8 @@ void addBiarticularSprings(EncompassingModel& model) {
     }
     const std::size_t law = model.addLaw(
         ElasticPath{id, ElasticPathKind::spring, {{}, {}, function}, excursion, 0, 0, 0, {}});
-    const auto number = [&](int component) {
-      return model.number(ForceNumberTarget{ForceNumberTarget::Of::elasticPath, law, component}, 0);
+    const auto number = [&](int place) {
+      return model.number(ForceNumberTarget{ForceNumberTarget::Kind::elasticPath, law, place}, 0);
     };
     const double size = 1 / (most * most);
     const std::size_t k = model.add(amplitude(id + ".stiffness", "N/m", 0, 10 * size, 2 * size),
