@@ -31,7 +31,7 @@ class HotJobs {
     return o;
   }
   Trajectory simulate(const SimulationOptions& options) const {
-    return simulateSetting(elbow_.arm, setting_, elbow_.excitation, options);
+    return simulateSetting(elbow_.system, setting_, elbow_.excitation, options);
   }
 
   /// Newton iterations a step of the last simulation.

@@ -129,6 +129,39 @@ Table sobolTable(const EnsembleFindings& f, std::size_t c) {
   return table;
 }
 
+Json channelJson(const EnsembleFindings& f, std::size_t c) {
+  Json json;
+  json["unit"] = f.table.channels()[c].unit.name;
+  for (std::size_t i = 0; i < bio::ensembleOutputs().size(); ++i) {
+    const bio::EnsembleOutput& output = bio::ensembleOutputs()[i];
+    const bio::Spread s = bio::spreadOf(f.channels[c].outputs[i]);
+    json[output.name] = {{"nominal", nominalOf(f, c, output)},
+                         {"mean", s.mean},
+                         {"sd", s.sd},
+                         {"p5", s.p5},
+                         {"p50", s.p50},
+                         {"p95", s.p95}};
+  }
+  if (!f.channels[c].sobol) return json;
+  const bio::SobolFinding& s = *f.channels[c].sobol;
+  Json indices = Json::array();
+  const auto& parameters = f.ensemble.laws().parameters;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    indices.push_back({{"parameter", parameters[i].name},
+                       {"first", s.indices.first[at]},
+                       {"first_interval", {s.intervals.first(at, 0), s.intervals.first(at, 1)}},
+                       {"total", s.indices.total[at]},
+                       {"total_interval", {s.intervals.total(at, 0), s.intervals.total(at, 1)}}});
+  }
+  json["sobol"] = {{"output", f.output},
+                   {"base_points", f.basePoints},
+                   {"variance", s.indices.variance},
+                   {"undefined", s.indices.undefined},
+                   {"indices", indices}};
+  return json;
+}
+
 }  // namespace
 
 void collect(EnsembleFindings& f) {
@@ -215,48 +248,6 @@ void writeSobol(const EnsembleFindings& f, std::ostream& out) {
   }
 }
 
-namespace {
-
-Json spreadJson(const EnsembleFindings& f, std::size_t c, std::size_t output) {
-  const bio::Spread s = bio::spreadOf(f.channels[c].outputs[output]);
-  return {{"nominal", nominalOf(f, c, bio::ensembleOutputs()[output])},
-          {"mean", s.mean},
-          {"sd", s.sd},
-          {"p5", s.p5},
-          {"p50", s.p50},
-          {"p95", s.p95}};
-}
-
-Json sobolJson(const EnsembleFindings& f, const bio::SobolFinding& s) {
-  Json indices = Json::array();
-  const auto& parameters = f.ensemble.laws().parameters;
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    indices.push_back({{"parameter", parameters[i].name},
-                       {"first", s.indices.first[at]},
-                       {"first_interval", {s.intervals.first(at, 0), s.intervals.first(at, 1)}},
-                       {"total", s.indices.total[at]},
-                       {"total_interval", {s.intervals.total(at, 0), s.intervals.total(at, 1)}}});
-  }
-  return {{"output", f.output},
-          {"base_points", f.basePoints},
-          {"variance", s.indices.variance},
-          {"undefined", s.indices.undefined},
-          {"indices", indices}};
-}
-
-Json channelJson(const EnsembleFindings& f, std::size_t c) {
-  Json json;
-  json["unit"] = f.table.channels()[c].unit.name;
-  for (std::size_t i = 0; i < bio::ensembleOutputs().size(); ++i) {
-    json[bio::ensembleOutputs()[i].name] = spreadJson(f, c, i);
-  }
-  if (f.channels[c].sobol) json["sobol"] = sobolJson(f, *f.channels[c].sobol);
-  return json;
-}
-
-}  // namespace
-
 void tellEnsemble(const EnsembleFindings& f, Summary& summary) {
   summary.set("draws", f.ensemble.count());
   Json ended = Json::object();
@@ -272,19 +263,16 @@ void tellEnsemble(const EnsembleFindings& f, Summary& summary) {
                     {"to", parameter.law.quantile(1)}});
   }
   summary.set("parameters", laws);
-  if (f.table.startsWithCoordinate()) {
-    for (std::size_t i = 0; i < bio::ensembleOutputs().size(); ++i) {
-      summary.set(bio::ensembleOutputs()[i].name + "_" + f.table.channels().front().unit.name,
-                  spreadJson(f, 0, i));
-    }
-    if (f.channels[0].sobol) summary.set("sobol", sobolJson(f, *f.channels[0].sobol));
-  }
-  if (f.table.isOneCoordinate()) return;
   Json channels = Json::object();
   for (std::size_t c = 0; c < f.channels.size(); ++c) {
     channels[f.table.channels()[c].name] = channelJson(f, c);
   }
-  summary.set("channels", channels);
+  const ShownChannel& first = f.table.channels().front();
+  for (const auto& [key, value] : channels[first.name].items()) {
+    if (!f.table.startsWithCoordinate() || key == "unit") continue;
+    summary.set(key == "sobol" ? key : key + "_" + first.unit.name, value);
+  }
+  if (!f.table.isOneCoordinate()) summary.set("channels", channels);
 }
 
 Report ensembleReport(const EnsembleFindings& f) {

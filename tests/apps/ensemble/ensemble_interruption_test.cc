@@ -50,6 +50,7 @@ TEST(EnsembleCommand, RefusesToGoOnWithOtherSettings) {
            {{"--seed", "2"}, "seed is 1 there, 2 here"},
            {{"--step", "0.02"}, "step_s is 0.01 there, 0.02 here"},
            {{"--spread", "2"}, "(parameters is [[\"hand.mass\""},
+           {{"--observe", "elbow_flexion.speed"}, "observe is [] there, [\"elbow_flexion.speed\"]"},
            {{"--sobol"}, "scheme is \"draws\" there, \"sobol\" here"}}) {
     const ProgramResult result = runEnsemble(out, with(many, more));
     EXPECT_EQ(result.status, 2);

@@ -116,7 +116,8 @@ TEST(TrialEnsemble, ChannelsAreThoseOfSingleReplaysOfTheDrawnModels) {
     const Observable last = observableNamed(roles.observed.back(), elbow.model);
     elbow.trial.measured.push_back(
         {last, elbow.trial.times.segment(20, 60), Eigen::VectorXd::LinSpaced(60, 1, 9)});
-    TrialEnsembleOptions options = drawing({"hand.mass", "TRI.radius", "BRA.tendon_slack_length"});
+    TrialEnsembleOptions options = drawing(
+        {"hand.mass", "TRI.radius", "BRA.tendon_slack_length", "BIClong.max_isometric_force"});
     options.observe = roles.observed;
     const TrialEnsemble ensemble = elbow.ensemble(options);
     const TrialReplay nominal = elbow.replay(elbow.model);
