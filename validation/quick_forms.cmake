@@ -30,7 +30,7 @@ set_tests_properties(Quick.RobotsSuite PROPERTIES TIMEOUT 300)
 fisherhill_quick(TwoJoints sh -c "rm -rf ${quick}/joints && ${python} validation/discovery/joints_and_torque.py \
 --build ${PROJECT_BINARY_DIR} --sets 1 --seconds 2 --seed 6 --world joints ${quick}/joints")
 fisherhill_quick(Torque sh -c "rm -rf ${quick}/torque && ${python} validation/discovery/joints_and_torque.py \
---build ${PROJECT_BINARY_DIR} --sets 1 --seconds 2 --seed 5 --world torque ${quick}/torque")
+--build ${PROJECT_BINARY_DIR} --sets 1 --seconds 2 --seed 1 --world torque ${quick}/torque")
 set_tests_properties(Quick.TwoJoints Quick.Torque PROPERTIES PASS_REGULAR_EXPRESSION "1 right")
 find_program(mpirun mpirun)
 if(mpirun AND TARGET fisherhill-mpi)

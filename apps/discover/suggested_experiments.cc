@@ -24,7 +24,7 @@ FollowUps followUpsOfModels(const bio::discover::EncompassingModel& model) {
                   (at.coordinate.isRotation ? ".torque" : ".force");
   const std::string end = bio::discover::endOfLimb(model);
   const std::string place = bio::discover::placeOfMass(model);
-  return {
+  FollowUps known{
       {
           {{"delay", "clock"},
            "Repeat a trial with recorded pulses of external load (column " + loadColumn +
@@ -39,10 +39,6 @@ FollowUps followUpsOfModels(const bio::discover::EncompassingModel& model) {
           {{"gain_", "Fmax_", "lopt_", "lslack_", "crosstalk", "saturated_", "offset_"},
            "Record one isolated contraction of each muscle, and one against a load cell at a "
            "fixed angle."},
-          {{"lever_", "payload", "mass", "tilt", "const", "bias", "lag"},
-           "Record the dynamometer moving as in a trial without the limb: what its lever weighs "
-           "and "
-           "its inertia are in that record alone."},
           {{"stiffness", "cubic", "tilt", "limit", "wrap_", "gain", "bias", "Fmax_"},
            "Move the relaxed limb slowly through its whole range with a dynamometer (column " +
                loadColumn + "): this shows the passive effects without the muscles."},
@@ -59,6 +55,15 @@ FollowUps followUpsOfModels(const bio::discover::EncompassingModel& model) {
       "region that the score map marks: this shows whether the missing effect belongs to the "
       "joint or to the muscles.",
       "Record one more trial and compare it with the motion that with_effect.osim predicts."};
+  const bool isOnADynamometer =
+      std::any_of(model.coordinates().begin(), model.coordinates().end(),
+                  [&](const auto& at) { return model.system().isPrescribed(at.index); });
+  if (isOnADynamometer)
+    known.interventions.push_back(
+        {{"lever_", "payload", "mass", "tilt", "const", "bias", "lag"},
+         "Record the dynamometer moving as in a trial without the limb: "
+         "what its lever weighs and its inertia are in that record alone."});
+  return known;
 }
 
 std::string followUp(const info::discover::DiscoveryProblem& data,

@@ -81,6 +81,20 @@ TEST(TwoElbows, MoveAlikeOnAnElasticBand) {
   EXPECT_GT(apart(theirs.model, theirs.trial, elbow).angle, 1);
 }
 
+TEST(TwoElbows, MoveAlikeWithACubicStiffness) {
+  const bio::fixtures::ShippedElbow theirs;
+  Extras extras;
+  extras.cubic = 1.5;
+  const TrueElbow elbow(readElbow(theirs.root() + "/models/elbow8.osim"), {}, extras);
+  const Eigen::Vector2d cubic(extras.cubic, 1.2);
+  const bio::Model model =
+      bio::discover::addEffects(theirs.model, theirs.options(), "elbow_flexion",
+                                {{"cubic", cubic, {}, 0, 0}}, {"a test", {}})
+          .model;
+  EXPECT_LT(apart(model, theirs.trial, elbow).angle, 1e-5);
+  EXPECT_GT(apart(theirs.model, theirs.trial, elbow).angle, 1);
+}
+
 // A relaxed arm that somebody else moves, turned as a whole and with a known mass in the hand:
 // where gravity and a force on the hand come from then.
 TEST(TwoElbows, MoveAlikeWhereTheArmIsTurned) {

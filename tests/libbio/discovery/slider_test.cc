@@ -89,6 +89,8 @@ TEST(Slider, HasEffectsInNewtonsAndMetres) {
   EXPECT_EQ(amplitudeOf("visc").unit, "N s/m");
   EXPECT_EQ(amplitudeOf("visc").upper, 24);  // 3 N m s/rad · 8 rad/m · 60 N of 64
   EXPECT_EQ(amplitudeOf("stiffness").unit, "N/m");
+  EXPECT_EQ(amplitudeOf("cubic").unit, "N/m^3");
+  EXPECT_EQ(amplitudeOf("cubic").upper, 20 * 512);
   EXPECT_EQ(amplitudeOf("coulomb").name, "coulomb.force");
   EXPECT_EQ(amplitudeOf("drag").unit, "N s^2/m^2");
   EXPECT_EQ(data.candidates()[candidateOf(data, "const")].name, "constant joint force");
