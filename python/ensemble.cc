@@ -115,7 +115,7 @@ py::object channelOf(const bio::TrialEnsemble& ensemble, const EnsembleRows& row
     const bio::ChannelRun& run = rows.runs[i].channels[channel];
     courses.row(static_cast<Eigen::Index>(i)) = run.atCourse;
     if (!what.isCoordinate()) continue;
-    const bio::Coordinate& coordinate = bio::findCoordinate(ensemble.model(), what.of);
+    const bio::Coordinate& coordinate = bio::findCoordinate(ensemble.model(), what.object);
     left += bio::leavesRange(coordinate, run.lowest, run.highest) ? 1 : 0;
   }
   py::dict outputs, spreads;

@@ -249,7 +249,7 @@ class Ensemble : public Command {
     for (std::size_t channel = 0; channel < f.channels.size(); ++channel) {
       const bio::Observable& what = study.ensemble.channels()[channel].what;
       if (!what.isCoordinate()) continue;
-      const bio::Coordinate& c = bio::findCoordinate(study.ensemble.model(), what.of);
+      const bio::Coordinate& c = bio::findCoordinate(study.ensemble.model(), what.object);
       const auto& [factor, unit] = study.table.channels()[channel].unit;
       const auto& lowest = f.channels[channel].outputs[3];
       const auto& highest = f.channels[channel].outputs[4];

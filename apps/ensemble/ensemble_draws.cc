@@ -20,12 +20,12 @@ std::string withBrackets(const std::string& name, const std::string& unit) {
 
 ShownChannel shown(const bio::Observable& what, const bio::Model& model) {
   if (what.isCoordinate()) {
-    const bio::Coordinate& coordinate = bio::findCoordinate(model, what.of);
+    const bio::Coordinate& coordinate = bio::findCoordinate(model, what.object);
     return {coordinate.name, {shownFactor(coordinate), shownUnit(coordinate)}};
   }
   const std::string unit = bio::unitOf(what, model);
   if (!unit.starts_with("rad")) return {nameOf(what), {1, unit}};
-  return {nameOf(what), {degreesPerRadian, "deg" + unit.substr(3)}};
+  return {nameOf(what), {bio::degreesPerRadian, "deg" + unit.substr(3)}};
 }
 
 /// At most nine digits: what other machines' libraries round otherwise is not shown.

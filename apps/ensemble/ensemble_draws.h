@@ -5,14 +5,14 @@
 
 #include "bio/analysis/ensemble_statistics.h"
 #include "bio/analysis/trial_ensemble.h"
-#include "output/angle_unit.h"
+#include "bio/model/units.h"
 
 namespace app {
 
 /// An observed channel as people see it.
 struct ShownChannel {
   std::string name;
-  ShownUnit unit;  ///< degrees for angles, millimetres for coordinates that slide
+  bio::ShownUnit unit;  ///< degrees for angles, millimetres for coordinates that slide
 };
 
 /// Writes and reads the rows from which draws.csv and band.csv are made. A row has the outcome of a
