@@ -44,18 +44,14 @@ constexpr std::array bushingParts{
     BushingPart{"translational_damping", "N s/m", "damping of the bushing along an axis",
                 &BushingForce::translationalDamping}};
 
-// Places in the lists of ForceNumberTarget::Kind.
-enum PointSpringNumber { springStiffness, springRestLength };
-enum ElasticPathNumber { pathRestLength, pathScale, pathDamping, pathTransitionStrain };
-
 /// Null: a law of this kind has no such number.
 double ElasticPath::*elasticMember(ElasticPathKind kind, int number) {
   constexpr double ElasticPath::*members[] = {&ElasticPath::restLength, &ElasticPath::scale,
                                               &ElasticPath::damping,
                                               &ElasticPath::transitionStrain};
-  const int last = kind == ElasticPathKind::ligament ? pathScale
-                   : kind == ElasticPathKind::spring ? pathDamping
-                                                     : pathTransitionStrain;
+  const int last = kind == ElasticPathKind::ligament ? ForceNumberTarget::pathScale
+                   : kind == ElasticPathKind::spring ? ForceNumberTarget::pathDamping
+                                                     : ForceNumberTarget::pathTransitionStrain;
   return number <= last ? members[number] : nullptr;
 }
 
@@ -66,16 +62,16 @@ ForceNumberRule elasticRule(const ElasticPath& path, int number) {
   const bool isBlankevoort = path.kind == ElasticPathKind::blankevoort1991;
   const bool isSpring = path.kind == ElasticPathKind::spring;
   switch (number) {
-    case pathRestLength:
+    case ForceNumberTarget::pathRestLength:
       return restingLength(isBlankevoort ? "slack_length" : "resting_length",
                            "length at which it begins to pull", value);
-    case pathScale:
+    case ForceNumberTarget::pathScale:
       if (isBlankevoort) {
         return positive("linear_stiffness", "N", "force per strain", value, 1e-6, 0.1);
       }
       if (isSpring) return positive("stiffness", "N/m", "stiffness", value, 1e-6, 0.1);
       return positive("pcsa_force", "N", "factor on the force–length curve", value, 1e-6, 0.1);
-    case pathDamping:
+    case ForceNumberTarget::pathDamping:
       if (isSpring) {
         return positive("dissipation", "s/m", "damping as a share of the tension", value, 1e-6);
       }
@@ -97,7 +93,8 @@ double* forceNumber(Model& model, const ForceNumberTarget& target) {
   switch (target.kind) {
     case ForceKind::pointSpring: {
       PointToPointSpring& spring = model.pointSprings[target.force];
-      return target.number == springStiffness ? &spring.stiffness : &spring.restLength;
+      return target.number == ForceNumberTarget::springStiffness ? &spring.stiffness
+                                                                 : &spring.restLength;
     }
     case ForceKind::bushing: {
       const BushingPart& part = bushingParts[static_cast<std::size_t>(target.number / 3)];
@@ -121,7 +118,7 @@ ForceNumberRule forceNumberRule(const Model& model, const ForceNumberTarget& tar
   switch (target.kind) {
     case ForceKind::pointSpring: {
       const PointToPointSpring& spring = model.pointSprings[target.force];
-      if (target.number == springRestLength) {
+      if (target.number == ForceNumberTarget::springRestLength) {
         return restingLength("rest_length", "length without force", spring.restLength);
       }
       return positive("stiffness", "N/m", "stiffness of the spring", spring.stiffness, 1e-6);

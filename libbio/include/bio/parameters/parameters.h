@@ -74,12 +74,14 @@ struct SpringForceTarget {
 /// A number of a force on bodies or of an actuator.
 struct ForceNumberTarget {
   enum class Kind {
-    pointSpring,  ///< stiffness, rest length
+    pointSpring,  ///< PointSpringNumber
     bushing,      ///< rotational and translational stiffness, rotational and translational damping
-    elasticPath,  ///< rest length, scale, damping, transition strain
+    elasticPath,  ///< ElasticPathNumber
     actuator      ///< optimal force
   } kind;
   std::size_t force;
+  enum PointSpringNumber { springStiffness, springRestLength };
+  enum ElasticPathNumber { pathRestLength, pathScale, pathDamping, pathTransitionStrain };
   int number;  ///< place in that list; x, y, z of a bushing's each
   friend bool operator==(const ForceNumberTarget&, const ForceNumberTarget&) = default;
 };

@@ -41,15 +41,16 @@ void addBiarticularSprings(EncompassingModel& model) {
     }
     const std::size_t law = model.addLaw(
         ElasticPath{id, ElasticPathKind::spring, {{}, {}, function}, excursion, 0, 0, 0, {}});
-    const auto number = [&](int place) {
+    const auto number = [&](ForceNumberTarget::ElasticPathNumber place) {
       return model.number(ForceNumberTarget{ForceNumberTarget::Kind::elasticPath, law, place}, 0);
     };
     const double size = 1 / (most * most);
-    const std::size_t k = model.add(amplitude(id + ".stiffness", "N/m", 0, 10 * size, 2 * size),
-                                    {Meaning::Kind::shift, {{number(1)}}});
+    const std::size_t k =
+        model.add(amplitude(id + ".stiffness", "N/m", 0, 10 * size, 2 * size),
+                  {Meaning::Kind::shift, {{number(ForceNumberTarget::pathScale)}}});
     const std::size_t rest = model.add(
         shape(id + ".rest", "m", excursion, 0.5 * excursion, 1.5 * excursion, 0.3 * excursion),
-        {Meaning::Kind::shift, {{number(0)}}});
+        {Meaning::Kind::shift, {{number(ForceNumberTarget::pathRestLength)}}});
     model.lawFollows({k, rest});
     model.add(candidate(
         model, id, fmt::format("passive tissue along {}", group.name),
