@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calibrate/fitted_table.h"
+#include "discover/excess_error_text.h"
 #include "discover/output_errors.h"
 #include "discover/written_discovery.h"
 #include "info/discovery/judgement/separation.h"
@@ -16,7 +17,6 @@ namespace app {
 namespace {
 
 using info::discover::Estimate;
-using info::discover::ExcessError;
 using info::discover::Score;
 using nlohmann::ordered_json;
 
@@ -28,23 +28,6 @@ ordered_json parametersJson(const DiscoverFindings& f, const std::vector<Estimat
         {"value", orNull(estimate.value)}, {"sd", orNull(estimate.sd)}, {"unit", quantity.unit}};
   }
   return parameters;
-}
-
-ordered_json excessErrorJson(const DiscoverFindings& f, const ExcessError& excess) {
-  const double unit = f.wording.unit;
-  const std::string& end = f.wording.errorEnd;
-  ordered_json json;
-  json["rmse_nominal" + end] = orNull(unit * excess.nominal);
-  json["rmse_calibrated" + end] = orNull(unit * excess.calibrated);
-  json["rmse_after" + end] = orNull(unit * excess.after);
-  if (excess.expected) json["rmse_expected" + end] = orNull(unit * *excess.expected);
-  if (excess.probability) json["rmse_probability"] = orNull(*excess.probability);
-  json["noise_floor" + end] = orNull(unit * excess.floor);
-  json["gap_closed"] =
-      excess.closedFromCalibrated ? orNull(*excess.closedFromCalibrated) : ordered_json(nullptr);
-  json["gap_closed_from_nominal"] =
-      excess.closedFromNominal ? orNull(*excess.closedFromNominal) : ordered_json(nullptr);
-  return json;
 }
 
 /// Names the axis that something belongs to, where there are several.
@@ -359,8 +342,11 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   addEffects(f, json);
   addSizes(f, json["effects"]);
   json["localisation"] = localisationJson(f);
-  json["gap"] = {{"train", excessErrorJson(f, verdict.excess)},
-                 {"held_out", verdict.heldOut ? excessErrorJson(f, *verdict.heldOut) : nullptr}};
+  const auto ofErrors = [&](const info::discover::ExcessError& excess) {
+    return excessErrorJson(excess, f.wording.unit, f.wording.errorEnd);
+  };
+  json["gap"] = {{"train", ofErrors(verdict.excess)},
+                 {"held_out", verdict.heldOut ? ofErrors(*verdict.heldOut) : nullptr}};
   json["held_out_fitted"] = verdict.heldOutFitted;
   if (verdict.replication) json["replication"] = replicationJson(f);
   if (f.written) {

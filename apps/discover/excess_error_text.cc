@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "output/json_text.h"
 #include "output/text.h"
 
 namespace app {
@@ -75,6 +76,22 @@ std::string excessErrorCell(const ExcessError& excess) {
       break;
   }
   return "none";
+}
+
+nlohmann::ordered_json excessErrorJson(const ExcessError& excess, double unit,
+                                       const std::string& end) {
+  nlohmann::ordered_json json;
+  json["rmse_nominal" + end] = orNull(unit * excess.nominal);
+  json["rmse_calibrated" + end] = orNull(unit * excess.calibrated);
+  json["rmse_after" + end] = orNull(unit * excess.after);
+  if (excess.expected) json["rmse_expected" + end] = orNull(unit * *excess.expected);
+  if (excess.probability) json["rmse_probability"] = orNull(*excess.probability);
+  json["noise_floor" + end] = orNull(unit * excess.floor);
+  json["gap_closed"] = excess.closedFromCalibrated ? orNull(*excess.closedFromCalibrated)
+                                                   : nlohmann::ordered_json(nullptr);
+  json["gap_closed_from_nominal"] = excess.closedFromNominal ? orNull(*excess.closedFromNominal)
+                                                             : nlohmann::ordered_json(nullptr);
+  return json;
 }
 
 }  // namespace app

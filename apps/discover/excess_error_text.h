@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "info/discovery/judgement/excess_error.h"
@@ -19,5 +20,11 @@ std::string excessErrorCell(const info::discover::ExcessError& excess);
 
 /// "°" for deg, " sd of the noise" for sd, else the unit after a space.
 std::string symbolOf(const std::string& unit);
+
+/// These errors as an object of verdict.json.
+/// @param unit factor from internal to shown values
+/// @param end  of the keys, "_deg"
+nlohmann::ordered_json excessErrorJson(const info::discover::ExcessError& excess, double unit,
+                                       const std::string& end);
 
 }  // namespace app

@@ -15,7 +15,8 @@ struct ShownUnit {
   std::string name;
 };
 
-/// The unit in which a coordinate's position is shown: degrees where it turns, millimetres where it slides.
+/// The unit in which a coordinate's position is shown: degrees where it turns, millimetres where it
+/// slides.
 inline ShownUnit positionUnit(bool isRotation) {
   return isRotation ? ShownUnit{degreesPerRadian, "deg"} : ShownUnit{1e3, "mm"};
 }
