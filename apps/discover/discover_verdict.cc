@@ -30,6 +30,10 @@ ordered_json parametersJson(const DiscoverFindings& f, const std::vector<Estimat
   return parameters;
 }
 
+ordered_json errorsJson(const DiscoverFindings& f, const info::discover::ExcessError& excess) {
+  return excessErrorJson(excess, f.wording.unit, f.wording.errorEnd);
+}
+
 /// Names the axis that something belongs to, where there are several.
 void addAxis(const DiscoverFindings& f, std::size_t axis, ordered_json& json) {
   if (f.wording.axes.size() > 1) json["axis"] = f.wording.axes.at(axis).name;
@@ -276,8 +280,8 @@ void addUnknown(const DiscoverFindings& f, ordered_json& json) {
             {"adequate", raced.after.adequate()},
             {"terms", ordered_json::array()},
             {"gap",
-             {{"train", excessErrorJson(f, raced.excess)},
-              {"held_out", raced.heldOut ? excessErrorJson(f, *raced.heldOut) : nullptr}}}};
+             {{"train", errorsJson(f, raced.excess)},
+              {"held_out", raced.heldOut ? errorsJson(f, *raced.heldOut) : nullptr}}}};
     for (std::size_t k = 0; k < raced.values.size(); ++k)
       race["terms"].push_back({{"expression", raced.terms[k].expression},
                                {"value", orNull(raced.values[k])},
@@ -342,11 +346,8 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   addEffects(f, json);
   addSizes(f, json["effects"]);
   json["localisation"] = localisationJson(f);
-  const auto ofErrors = [&](const info::discover::ExcessError& excess) {
-    return excessErrorJson(excess, f.wording.unit, f.wording.errorEnd);
-  };
-  json["gap"] = {{"train", ofErrors(verdict.excess)},
-                 {"held_out", verdict.heldOut ? ofErrors(*verdict.heldOut) : nullptr}};
+  json["gap"] = {{"train", errorsJson(f, verdict.excess)},
+                 {"held_out", verdict.heldOut ? errorsJson(f, *verdict.heldOut) : nullptr}};
   json["held_out_fitted"] = verdict.heldOutFitted;
   if (verdict.replication) json["replication"] = replicationJson(f);
   if (f.written) {
