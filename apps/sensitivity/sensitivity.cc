@@ -159,8 +159,8 @@ class Sensitivity : public Command {
     deliver(context, summary, sensitivityReport(findings), folder);
     bool complete = true;
     for (const bio::Sweep& sweep : findings.sweeps) {
-      for (const bio::SweepRun& swept : sweep.runs) {
-        complete = complete && swept.motion.outcome == bio::Outcome::completed;
+      for (const bio::SweepRun& run : sweep.runs) {
+        complete = complete && run.motion.outcome == bio::Outcome::completed;
       }
     }
     return complete ? ExitStatus::done : ExitStatus::answerIsNo;
