@@ -44,7 +44,7 @@ TEST(FarSuite, HidesNothingInOneOfFourSetsAndEverythingInTurn) {
   }
   EXPECT_EQ(nothing, 24);
   EXPECT_EQ(parameters, 24);
-  EXPECT_EQ(effects.size(), 24u + 7u);
+  EXPECT_EQ(effects.size(), 25u + 7u);
 }
 
 TEST(FarSuite, AnEffectThatIsNamedSaysWhatIsHidden) {
