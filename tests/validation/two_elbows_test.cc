@@ -67,32 +67,30 @@ TEST(TwoElbows, MoveAlikeWhereNothingIsHidden) {
   EXPECT_LT(largest.fibre, 1e-8);
 }
 
-TEST(TwoElbows, MoveAlikeOnAnElasticBand) {
+/// The shipped elbow with an effect of the catalogue moves as the independent one with its
+/// `extras`.
+void mustMoveAlike(const Extras& extras, const std::string& id, const Eigen::Vector2d& values,
+                   double tolerance) {
   const bio::fixtures::ShippedElbow theirs;
-  Extras extras;
-  extras.band = 40;
   const TrueElbow elbow(readElbow(theirs.root() + "/models/elbow8.osim"), {}, extras);
-  const Eigen::Vector2d band(extras.band, extras.bandRest);
   const bio::Model model =
       bio::discover::addEffects(theirs.model, theirs.options(), "elbow_flexion",
-                                {{"spring", band, {}, 0, 0}}, {"a test", {}})
+                                {{id, values, {}, 0, 0}}, {"a test", {}})
           .model;
-  EXPECT_LT(apart(model, theirs.trial, elbow).angle, 1e-4);
+  EXPECT_LT(apart(model, theirs.trial, elbow).angle, tolerance);
   EXPECT_GT(apart(theirs.model, theirs.trial, elbow).angle, 1);
 }
 
+TEST(TwoElbows, MoveAlikeOnAnElasticBand) {
+  Extras extras;
+  extras.band = 40;
+  mustMoveAlike(extras, "spring", {extras.band, extras.bandRest}, 1e-4);
+}
+
 TEST(TwoElbows, MoveAlikeWithACubicStiffness) {
-  const bio::fixtures::ShippedElbow theirs;
   Extras extras;
   extras.cubic = 1.5;
-  const TrueElbow elbow(readElbow(theirs.root() + "/models/elbow8.osim"), {}, extras);
-  const Eigen::Vector2d cubic(extras.cubic, 1.2);
-  const bio::Model model =
-      bio::discover::addEffects(theirs.model, theirs.options(), "elbow_flexion",
-                                {{"cubic", cubic, {}, 0, 0}}, {"a test", {}})
-          .model;
-  EXPECT_LT(apart(model, theirs.trial, elbow).angle, 1e-5);
-  EXPECT_GT(apart(theirs.model, theirs.trial, elbow).angle, 1);
+  mustMoveAlike(extras, "cubic", {extras.cubic, 1.2}, 1e-5);  // about the rest of Extras::cubic
 }
 
 // A relaxed arm that somebody else moves, turned as a whole and with a known mass in the hand:

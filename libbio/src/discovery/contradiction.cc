@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
+#include <memory>
 #include <numbers>
 #include <optional>
 
 #include "bio/analysis/inverse_dynamics.h"
 #include "bio/analysis/replay.h"
+#include "bio/discovery/with_experimental_conditions.h"
 #include "bio/model/units.h"
 #include "bio/observation/smoothed_motion.h"
 #include "info/dynamics/linear_table.h"
@@ -34,16 +35,14 @@ constexpr double tie = 0.05;       ///< difference of correlations that says not
 /// What is compared of a trial, on a grid of times.
 struct Recorded {
   std::string name;
+  /// The model under the trial's experimental conditions, with all coordinates prescribed.
+  std::shared_ptr<const MusculoskeletalSystem> driven;
   std::vector<double> times;
-  MatrixXd q;  ///< the system's coordinates × times
-  MatrixXd
-      moment;  ///< measured ones, coordinates in question × times; 0 where the coordinate is free
+  MatrixXd q;       ///< the system's coordinates × times
+  MatrixXd moment;  ///< measured: coordinates in question × times; 0 of a free coordinate
   ExcitationSignal excitation;
   SimulationOptions simulation;
 };
-
-/// A change of one recording.
-using Change = std::function<void(Recorded&)>;
 
 VectorXd onGrid(const MeasuredChannel& channel, const std::vector<double>& times) {
   const std::vector<double> at(channel.times.begin(), channel.times.end());
@@ -69,13 +68,23 @@ ExcitationSignal shifted(const ExcitationSignal& signal, double by) {
   return {std::move(times), std::move(values)};
 }
 
+/// The recording with its excitations later by so many seconds (earlier if negative), without the
+/// part that they do not cover then.
+Recorded withLaterExcitations(Recorded trial, double by) {
+  trial.excitation = shifted(trial.excitation, by);
+  const auto lost = static_cast<std::ptrdiff_t>(std::abs(by) / spacing);
+  const std::ptrdiff_t kept = std::ssize(trial.times) - lost, from = by > 0 ? lost : 0;
+  trial.times = {trial.times.begin() + from, trial.times.begin() + from + kept};
+  trial.q = MatrixXd(trial.q.middleCols(from, kept));
+  trial.moment = MatrixXd(trial.moment.middleCols(from, kept));
+  return trial;
+}
+
 class Comparison {
  public:
   Comparison(const Model& model, const SystemOptions& options,
              const std::vector<std::string>& inQuestion)
-      : system_(model, options),
-        driven_(MusculoskeletalSystem(model, options).withAllPrescribed()),
-        inQuestion_(inQuestion) {
+      : model_(model), options_(options), system_(model, options), inQuestion_(inQuestion) {
     const auto& all = system_.skeleton().coordinates();
     for (const std::string& name : inQuestion) {
       const auto at = std::find_if(all.begin(), all.end(),
@@ -119,6 +128,10 @@ class Comparison {
     if (!(last - first > shortest)) return {};
     Recorded result;
     result.name = std::filesystem::path(trial.file).filename().string();
+    result.driven = std::make_shared<const MusculoskeletalSystem>(
+        MusculoskeletalSystem(withExperimentalConditions(model_, options_, inQuestion_, trial),
+                              options_)
+            .withAllPrescribed());
     for (double t = first; t < last; t += spacing) result.times.push_back(t);
     const auto n = static_cast<Index>(result.times.size());
     Trial smooth = trial;
@@ -180,7 +193,7 @@ class Comparison {
   /// Reactions of the coordinates in question, at the grid's times.
   MatrixXd reactions(const Recorded& trial, const ExcitationSignal& excitation) const {
     const Trajectory motion =
-        inverseDynamicsOf(driven_, excitation, trial.times, trial.q, trial.simulation);
+        inverseDynamicsOf(*trial.driven, excitation, trial.times, trial.q, trial.simulation);
     if (motion.outcome != Outcome::completed) throw std::domain_error(motion.why);
     const auto count = static_cast<Index>(
         std::min(trial.times.size(), static_cast<std::size_t>(motion.reaction.cols())));
@@ -194,7 +207,9 @@ class Comparison {
     return result;
   }
 
-  MusculoskeletalSystem system_, driven_;
+  const Model& model_;
+  const SystemOptions& options_;
+  MusculoskeletalSystem system_;
   std::vector<std::string> inQuestion_;
   std::vector<Index> rows_;  ///< of the coordinates in question
 };
@@ -203,13 +218,14 @@ class Comparison {
 class Remedies {
  public:
   Remedies(const Comparison& comparison, const std::vector<std::string>& names,
-           const std::vector<Recorded>& trials)
-      : comparison_(comparison), names_(names), trials_(trials) {}
+           const std::vector<Recorded>& trials, const std::function<bool()>& goOn)
+      : comparison_(comparison), names_(names), trials_(trials), goOn_(goOn) {}
 
   void run(InputAgreement& result) {
     for (std::size_t i = 0; i < names_.size(); ++i) ofCoordinate(i);
     ofTime();
     ofTrials();
+    if (stopped_) return;
     std::stable_sort(found_.begin(), found_.end(),
                      [](const Found& a, const Found& b) { return a.correlation > b.correlation; });
     for (const Found& found : found_) {
@@ -227,10 +243,15 @@ class Remedies {
     double correlation;
   };
 
+  double correlation(const std::vector<Recorded>& changed) {
+    stopped_ = stopped_ || !goOn_();
+    return stopped_ ? NAN : comparison_.correlation(changed);
+  }
   void consider(std::string clause, const std::vector<Recorded>& changed) {
-    const double correlation = comparison_.correlation(changed);
+    const double correlation = this->correlation(changed);
     if (std::isfinite(correlation)) found_.push_back({std::move(clause), correlation});
   }
+  template <class Change>
   void considerAll(std::string clause, const Change& change) {
     std::vector<Recorded> changed = trials_;
     for (Recorded& trial : changed) change(trial);
@@ -247,7 +268,7 @@ class Remedies {
                   [&](Recorded& trial) { trial.moment.row(static_cast<Index>(i)) *= -1; });
     if (!comparison_.isRotation(i)) return;
     considerAll(
-        fmt::format("{} is 180 degrees less what was recorded", name),
+        fmt::format("{} is 180 degrees minus what was recorded", name),
         [&](Recorded& trial) { trial.q.row(row) = std::numbers::pi - trial.q.row(row).array(); });
     double largest = 0;
     for (const Recorded& trial : trials_)
@@ -266,20 +287,10 @@ class Remedies {
     std::optional<Found> best;
     for (const double direction : {1.0, -1.0}) {
       for (double by = nearest; by < most; by += shiftStep) {
-        std::vector<Recorded> changed = trials_;
-        for (Recorded& trial : changed) {
-          trial.excitation = shifted(trial.excitation, direction * by);
-          const auto lost = static_cast<std::size_t>(by / spacing);
-          const std::size_t kept = trial.times.size() - lost;
-          const std::size_t from = direction > 0 ? lost : 0;
-          trial.times = {trial.times.begin() + static_cast<std::ptrdiff_t>(from),
-                         trial.times.begin() + static_cast<std::ptrdiff_t>(from + kept)};
-          trial.q =
-              MatrixXd(trial.q.middleCols(static_cast<Index>(from), static_cast<Index>(kept)));
-          trial.moment =
-              MatrixXd(trial.moment.middleCols(static_cast<Index>(from), static_cast<Index>(kept)));
-        }
-        const double correlation = comparison_.correlation(changed);
+        std::vector<Recorded> changed;
+        for (const Recorded& trial : trials_)
+          changed.push_back(withLaterExcitations(trial, direction * by));
+        const double correlation = this->correlation(changed);
         if (best && !(correlation > best->correlation)) continue;
         best = Found{
             fmt::format("the excitations are {:.1f} s {}", by, direction > 0 ? "early" : "late"),
@@ -300,7 +311,7 @@ class Remedies {
       for (std::size_t k = 0; k < trials_.size(); ++k) {
         Recorded trial = trials_[i];
         trial.excitation = trials_[k].excitation;
-        const double correlation = comparison_.correlation({trial});
+        const double correlation = this->correlation({trial});
         if (!(correlation > most)) continue;
         most = correlation;
         best = k;
@@ -316,14 +327,16 @@ class Remedies {
   const Comparison& comparison_;
   const std::vector<std::string>& names_;
   const std::vector<Recorded>& trials_;
+  const std::function<bool()>& goOn_;
   std::vector<Found> found_;
+  bool stopped_ = false;
 };
 
 }  // namespace
 
 InputAgreement inputAgreement(const Model& model, const SystemOptions& system,
-                              const CoordinateNames& coordinates,
-                              const std::vector<Trial>& trials) {
+                              const CoordinateNames& coordinates, const std::vector<Trial>& trials,
+                              const std::function<bool()>& goOn) {
   InputAgreement result;
   const Comparison comparison(model, system, coordinates.all);
   if (!comparison.isPossible()) return result;
@@ -335,7 +348,7 @@ InputAgreement inputAgreement(const Model& model, const SystemOptions& system,
   }
   result.correlation = comparison.correlation(recorded);
   if (result.correlation < InputAgreement::tooSmall)
-    Remedies(comparison, coordinates.all, recorded).run(result);
+    Remedies(comparison, coordinates.all, recorded, goOn).run(result);
   return result;
 }
 

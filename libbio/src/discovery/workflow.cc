@@ -1,6 +1,7 @@
 #include "bio/discovery/workflow.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +24,10 @@ SteppedVerdict search(const DiscoveryRequest& request, const std::vector<Trial>&
   info::discover::Options options = request.search;
   if (result.trialsAreCut)
     options.progress = info::discover::progressOfAnother(std::move(options.progress));
-  const info::discover::TrialSearch asked{request.trials.size(),   request.numHeldOut, request.step,
-                                          problem.simulation.step, shortestSearchStep, options};
+  const info::discover::TrialSearch asked{
+      request.trials.size(),          request.numHeldOut, request.step,
+      problem.simulation.step,        shortestSearchStep, options,
+      !result.inputs.remedies.empty()};
   return info::discover::searchTrials(
       asked, [&](double step) -> const info::discover::DiscoveryProblem& {
         problem.simulation.step = step;
@@ -51,8 +54,10 @@ std::string errorText(const MusculoskeletalProblem& data, const Verdict& verdict
   const auto& sensors = data.encompassing().sensors();
   if (sensors.size() > 1) return fmt::format("{:.2g} times the noise", error / verdict.sds.sd(0));
   const std::string unit = unitOf(sensors.front(), data.encompassing().base());
-  if (unit == "rad") return fmt::format("{:.2g} deg", error * degreesPerRadian);
-  if (unit == "m") return fmt::format("{:.2g} mm", 1e3 * error);
+  if (unit == "rad" || unit == "m") {
+    const ShownUnit shown = positionUnit(unit == "rad");
+    return fmt::format("{:.2g} {}", shown.factor * error, shown.name);
+  }
   return fmt::format("{:.2g} {}", error, unit);
 }
 
@@ -61,14 +66,16 @@ std::string errorText(const MusculoskeletalProblem& data, const Verdict& verdict
 std::string refitSentence(const MusculoskeletalProblem& data, const Verdict& verdict,
                           const std::vector<info::discover::FittedNumber>& fitted) {
   const info::discover::ExcessError& excess = verdict.excess;
-  if (verdict.finding != Finding::none || !(excess.nominal > 2 * excess.after)) return {};
+  if (verdict.finding != Finding::none || verdict.reached != Stage::finished) return {};
+  if (!(excess.nominal > 2 * excess.after)) return {};
   const auto& quantities = data.quantities();
   const info::discover::Estimate* most = nullptr;
   for (const info::discover::Estimate& e : verdict.nuisancesAfter)
     if (quantities[e.quantity].trial < 0 && (!most || e.moves > most->moves)) most = &e;
   if (!most) return {};
-  const auto number = std::find_if(fitted.begin(), fitted.end(),
-                                   [&](const auto& of) { return of.quantity == most->quantity; });
+  const auto number = std::find_if(fitted.begin(), fitted.end(), [&](const auto& each) {
+    return each.quantity == most->quantity;
+  });
   const std::string before =
       std::isfinite(excess.nominal)
           ? fmt::format("With its nominal parameters the model is {} off",
@@ -102,6 +109,7 @@ void searchBeforeBreak(const DiscoveryRequest& request, DiscoveryResult& result)
       !parts.empty()) {
     DiscoveryResult second;
     second.trialsAreCut = true;
+    second.inputs = result.inputs;
     second.found = search(request, parts, second);
     Verdict& other = second.found.verdict;
     const int fits = verdict.fits + other.fits;
@@ -153,44 +161,33 @@ void repair(const DiscoveryRequest& request, DiscoveryResult& result) {
   }
 }
 
-/// The clauses, "or" between them.
-std::string either(const std::vector<std::string>& clauses) {
-  std::string words;
-  for (const std::string& clause : clauses) words += (words.empty() ? "" : ", or ") + clause;
-  return words;
-}
-
 /// No search where the recording contradicts itself: every effect would be one that imitates that.
 void searchUnlessContradicted(const DiscoveryRequest& request, DiscoveryResult& result) {
+  const auto goOn = [&] {
+    const auto& progress = request.search.progress;
+    return !progress || progress({Stage::calibrate, 0, "excitations and motion"});
+  };
   result.inputs =
-      inputAgreement(request.model, request.system, request.coordinates, request.trials);
+      inputAgreement(request.model, request.system, request.coordinates, request.trials, goOn);
   const InputAgreement& inputs = result.inputs;
-  if (inputs.remedies.empty()) {
-    result.found = search(request, request.trials, result);
-    searchBeforeBreak(request, result);
-    Verdict& verdict = result.found.verdict;
-    if (!(inputs.correlation < InputAgreement::unrelated) || !mayBeAdded(verdict)) return;
-    verdict.vetoed = true;
-    verdict.probability = 0;
-    verdict.sentence += fmt::format(
-        " But the muscles' moments are unrelated to those that the motion requires (correlation "
-        "{:.2f}): are the excitations of this trial, this side and these muscles?",
-        inputs.correlation);
+  result.found = search(request, request.trials, result);
+  Verdict& verdict = result.found.verdict;
+  if (!inputs.remedies.empty()) {
+    verdict.sentence = fmt::format(
+        "The recording contradicts itself: the moments of the muscles do not follow those that the "
+        "motion requires (correlation {:.2f}), but they do ({:.2f}) if {}. No effect was looked "
+        "for.",
+        inputs.correlation, inputs.remedied, fmt::join(inputs.remedies, ", or "));
     return;
   }
-  MusculoskeletalProblemOptions problem = request.problem;
-  if (request.step) problem.simulation.step = *request.step;
-  result.data = std::make_unique<MusculoskeletalProblem>(
-      request.model, request.system, request.coordinates, request.trials, problem);
-  info::discover::Options& options = result.found.options = request.search;
-  for (std::size_t i = request.trials.size() - request.numHeldOut; i < request.trials.size(); ++i)
-    options.heldOut.push_back(static_cast<int>(i));
-  result.found.step = problem.simulation.step;
-  Verdict& verdict = result.found.verdict = info::discover::withoutSearch(*result.data, options);
-  verdict.sentence = fmt::format(
-      "The recording contradicts itself: the moments of the muscles do not follow those that the "
-      "motion requires (correlation {:.2f}), but they do ({:.2f}) if {}. No effect was looked for.",
-      inputs.correlation, inputs.remedied, either(inputs.remedies));
+  searchBeforeBreak(request, result);
+  if (!(inputs.correlation < InputAgreement::unrelated) || !mayBeAdded(verdict)) return;
+  verdict.vetoed = true;
+  verdict.probability = 0;
+  verdict.sentence += fmt::format(
+      " But the muscles' moments are unrelated to those that the motion requires (correlation "
+      "{:.2f}): are the excitations of this trial, this side and these muscles?",
+      inputs.correlation);
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ TEST(InputAgreement, NamesASupplement) {
     Eigen::VectorXd& angle = trial.measured.front().values;
     angle = 3.14159265358979 - angle.array();
   }
-  EXPECT_THAT(recordings.agreement().remedies, ElementsAre(HasSubstr("180 degrees less")));
+  EXPECT_THAT(recordings.agreement().remedies, ElementsAre(HasSubstr("180 degrees minus")));
 }
 
 TEST(InputAgreement, NamesAWrongUnit) {
@@ -97,6 +97,28 @@ TEST(InputAgreement, NamesExcitationsOfAnotherTrial) {
       recordings.agreement().remedies,
       ElementsAre("the motion of train_1.sto belongs to the excitations of train_2.sto, the "
                   "motion of train_2.sto belongs to the excitations of train_1.sto"));
+}
+
+/// An arm that hangs upside down: its muscles work against the other sign of gravity.
+TEST(InputAgreement, KnowsHowTheLimbWasTurned) {
+  Recordings recordings;
+  const double before = recordings.agreement().correlation;
+  for (Trial& trial : recordings.trials) trial.conditions.armTurn = 3.14159265358979;
+  const double turned = recordings.agreement().correlation;
+  EXPECT_LT(turned, before - 0.5);
+  recordings.model.gravity *= -1;
+  EXPECT_NEAR(recordings.agreement().correlation, before, 1e-6);
+}
+
+TEST(InputAgreement, StopsWhereItIsToldTo) {
+  Recordings recordings;
+  for (Trial& trial : recordings.trials) trial.measured.front().values *= -1;
+  int asked = 0;
+  const InputAgreement agreement =
+      inputAgreement(recordings.model, recordings.options, "elbow_flexion", recordings.trials,
+                     [&] { return ++asked < 2; });
+  EXPECT_THAT(agreement.remedies, IsEmpty());
+  EXPECT_EQ(asked, 2);
 }
 
 TEST(InputAgreement, SaysNothingOfMusclesThatDoNothing) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,8 +14,8 @@ namespace bio::discover {
 /// fitted. Along the motion (smoothed, 3 Hz), inverse dynamics gives the moment that the muscles
 /// have to make, and the moment that they make with the recorded excitations. Their correlation is
 /// that of the deviations from each trial's means, over the trials; it does not depend on a common
-/// factor of all muscles. Of the sets with hidden effects in validation/discovery it is above 0.7,
-/// of the same sets with wrong sign, unit, time or trial below 0.6.
+/// factor of all muscles. Measured values of sets made by OpenSim, as they are and with wrong sign,
+/// unit, time or trial: validation/discovery/README.md.
 struct InputAgreement {
   static constexpr double tooSmall = 0.7;     ///< below: the recording may contradict itself
   static constexpr double largeEnough = 0.8;  ///< that of a remedy
@@ -32,8 +34,12 @@ struct InputAgreement {
   double remedied = NAN;  ///< correlation with the first of them
 };
 
+/// Each trial is judged under its experimental conditions (withExperimentalConditions()).
 /// @param coordinates  those in question
-InputAgreement inputAgreement(const Model& model, const SystemOptions& system,
-                              const CoordinateNames& coordinates, const std::vector<Trial>& trials);
+/// @param goOn  asked before every simulation of a changed recording; false: without remedies
+/// @throws what withExperimentalConditions() and recordedTrial() throw
+InputAgreement inputAgreement(
+    const Model& model, const SystemOptions& system, const CoordinateNames& coordinates,
+    const std::vector<Trial>& trials, const std::function<bool()>& goOn = [] { return true; });
 
 }  // namespace bio::discover

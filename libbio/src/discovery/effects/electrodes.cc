@@ -32,6 +32,26 @@ void addShape(EncompassingModel& model) {
                       EffectKind::input, {A}, {{-1.5}, {-0.5}, {0.5}, {1.5}}));
 }
 
+namespace {
+
+std::string crosstalkId(const std::string& from, const std::string& to) {
+  return fmt::format("crosstalk_{}_{}", from, to);
+}
+
+std::string exchangeId(const std::string& one, const std::string& other) {
+  return fmt::format("swap_{}_{}", one, other);
+}
+
+std::string gainId(const std::string& name) {
+  return "gain_" + name;
+}
+
+std::string saturationId(const std::string& name) {
+  return "saturated_" + name;
+}
+
+}  // namespace
+
 /// Crosstalk to each muscle of one group from the mean of another's.
 void addCrosstalk(EncompassingModel& model) {
   for (const MuscleGroup& from : model.groups()) {
@@ -45,14 +65,13 @@ void addCrosstalk(EncompassingModel& model) {
           parts.push_back({model.number(target, 0), 1 / static_cast<double>(from.muscles.size())});
         }
       }
-      const std::string id = fmt::format("crosstalk_{}_{}", from.name, to.name);
+      const std::string id = crosstalkId(from.name, to.name);
       const std::size_t c =
           model.add(amplitude(id + ".share", "", 0, 0.5, 0.2), {Meaning::Kind::shift, parts});
       model.add(candidate(model, id, fmt::format("EMG crosstalk from {} to {}", from.name, to.name),
                           fmt::format("The electrodes of {} also pick up a share of the EMG of {}.",
                                       to.name, from.name),
-                          EffectKind::input, {c}, {{0.05}},
-                          {fmt::format("crosstalk_{}_{}", to.name, from.name)}));
+                          EffectKind::input, {c}, {{0.05}}, {crosstalkId(to.name, from.name)}));
     }
   }
 }
@@ -64,7 +83,7 @@ void addExchangedChannels(EncompassingModel& model) {
   };
   for (std::size_t i = 0; i < muscles.size(); ++i) {
     for (std::size_t k = i + 1; k < muscles.size(); ++k) {
-      const std::string id = fmt::format("swap_{}_{}", muscles[i].name, muscles[k].name);
+      const std::string id = exchangeId(muscles[i].name, muscles[k].name);
       const std::size_t s =
           model.add(amplitude(id + ".share", "", 0, 1.2, 0.7),
                     {Meaning::Kind::shift,
@@ -80,10 +99,6 @@ void addExchangedChannels(EncompassingModel& model) {
 }
 
 namespace {
-
-std::string saturationId(const std::string& name) {
-  return "saturated_" + name;
-}
 
 /// Calls use(name, muscles) for every muscle, and every group of several.
 template <class Use>
@@ -135,7 +150,7 @@ std::vector<std::string> withoutElectrode(const EncompassingModel& model,
   std::vector<std::string> ids, silentGroups;
   forMusclesAndGroups(model, [&](const std::string& name, const std::vector<std::string>& muscles) {
     if (!std::all_of(muscles.begin(), muscles.end(), isSilent)) return;
-    ids.push_back("gain_" + name);
+    ids.push_back(gainId(name));
     ids.push_back(saturationId(name));
   });
   const auto& muscles = model.system().muscles();
@@ -146,14 +161,14 @@ std::vector<std::string> withoutElectrode(const EncompassingModel& model,
   }
   for (const std::string& silentGroup : silentGroups) {
     for (const MuscleGroup& other : model.groups()) {
-      ids.push_back(fmt::format("crosstalk_{}_{}", silentGroup, other.name));
-      ids.push_back(fmt::format("crosstalk_{}_{}", other.name, silentGroup));
+      ids.push_back(crosstalkId(silentGroup, other.name));
+      ids.push_back(crosstalkId(other.name, silentGroup));
     }
   }
   for (std::size_t i = 0; i < muscles.size(); ++i) {
     for (std::size_t k = i + 1; k < muscles.size(); ++k) {
       if (isSilent(muscles[i].name) || isSilent(muscles[k].name))
-        ids.push_back(fmt::format("swap_{}_{}", muscles[i].name, muscles[k].name));
+        ids.push_back(exchangeId(muscles[i].name, muscles[k].name));
     }
   }
   return ids;
@@ -172,7 +187,7 @@ void addElectrodeGains(EncompassingModel& model) {
     model.add(candidate(model, id, name, sentence, EffectKind::input, {g}, {{1.1}}, equivalents));
   };
   forMusclesAndGroups(model, [&](const std::string& name, const std::vector<std::string>& muscles) {
-    add("gain_" + name, muscles, fmt::format("electrode gain of {}", name),
+    add(gainId(name), muscles, fmt::format("electrode gain of {}", name),
         fmt::format("The EMG of {} is scaled by a wrong gain.", name), {"Fmax_" + name});
   });
   if (model.groups().size() < 2) return;  // else that of the only group

@@ -83,6 +83,16 @@ SteppedVerdict runTwiceIfNeeded(const MakeAttempt& attempt, double step, double 
   return first;
 }
 
+SteppedVerdict timed(const std::function<SteppedVerdict()>& search) {
+  const auto begin = std::chrono::steady_clock::now();
+  const double used = threadSeconds();
+  SteppedVerdict found = search();
+  found.wallSeconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  found.processorSeconds = threadSeconds() - used;
+  return found;
+}
+
 }  // namespace
 
 std::function<bool(const Progress&)> progressOfAnother(
@@ -94,13 +104,7 @@ std::function<bool(const Progress&)> progressOfAnother(
 }
 
 SteppedVerdict runAtShorterSteps(const MakeAttempt& attempt, double step, double shortest) {
-  const auto begin = std::chrono::steady_clock::now();
-  const double used = threadSeconds();
-  SteppedVerdict found = runTwiceIfNeeded(attempt, step, shortest);
-  found.wallSeconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  found.processorSeconds = threadSeconds() - used;
-  return found;
+  return timed([&] { return runTwiceIfNeeded(attempt, step, shortest); });
 }
 
 SteppedVerdict searchTrials(const TrialSearch& search,
@@ -109,12 +113,16 @@ SteppedVerdict searchTrials(const TrialSearch& search,
   options.heldOut.clear();
   for (std::size_t i = search.numTrials - search.numHeldOut; i < search.numTrials; ++i)
     options.heldOut.push_back(static_cast<int>(i));
+  const double first = search.step.value_or(search.firstStep);
+  if (search.onlyNominal)
+    return timed([&] {
+      return SteppedVerdict{withoutSearch(problemAt(first), options), options, first};
+    });
   return runAtShorterSteps(
       [&](double step) {
         return Attempt{problemAt(step), options};
       },
-      search.step.value_or(search.firstStep),
-      search.step ? std::numeric_limits<double>::infinity() : search.shortest);
+      first, search.step ? std::numeric_limits<double>::infinity() : search.shortest);
 }
 
 }  // namespace info::discover

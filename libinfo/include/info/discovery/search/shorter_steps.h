@@ -51,6 +51,7 @@ struct TrialSearch {
   std::optional<double> step;          ///< [s] the only one; empty: `firstStep`, halved if need be
   double firstStep = 0, shortest = 0;  ///< [s]
   Options options;                     ///< heldOut is set by searchTrials()
+  bool onlyNominal = false;            ///< withoutSearch(), at the first step
 };
 
 /// Search, held-out test, second look and verdict, for any kind of system: runAtShorterSteps.
