@@ -1,5 +1,6 @@
 #pragma once
 
+#include "info/discovery/discover.h"
 #include "info/discovery/likelihood/hypothesis.h"
 #include "support/linear_problem.h"
 
@@ -16,6 +17,16 @@ inline LinearDisagreement drawn(std::uint64_t seed, double push, double gain) {
   truth[1] = push;
   data.draw(seed, truth, kOutput, kLatent, kTime);
   return data;
+}
+
+/// What the engine is told of drawn().
+inline info::discover::Options optionsOfDrawn() {
+  info::discover::Options options;
+  options.sds = kOutput;
+  options.latentScale = 1;
+  options.latentTime = kTime;
+  options.latentTolerance = 0.6;
+  return options;
 }
 
 }  // namespace support

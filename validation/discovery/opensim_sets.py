@@ -1,16 +1,21 @@
 #!/usr/bin/env python3
 """discover on sets that OpenSim made, verdict beside truth, as a table.
 
-    python3 validation/discovery/opensim_sets.py [--build build/program] [--only NAME ...] [--limit 600] SETS MODELS FOLDER
+    python3 validation/discovery/opensim_sets.py [--build build/program] [--only NAME ...] [--limit 600] [--spoil KIND ...] SETS MODELS FOLDER
 
 SETS: folders a … h, arm26_a … f, leg_a … d, millard_a, b and dyn_a … e of trials trial_0 …; the last trial is held out. MODELS: folder with
 reference/elbow8_reference.osim and data/models/opensim. Results go to FOLDER/NAME. "right": what is hidden, or a class that holds it, and nothing else;
 "part": one of two hidden effects; "unnamed": no name, though something is hidden; "wrong": another name. --limit: seconds for one set. The agreement of
 inputs is the correlation of the muscles' moments with those that the motion requires.
-Exit status 1: a wrong name.
+
+--spoil: the sets with recordings that contradict themselves: "sign" of the first angle reversed, "signs" of all angles and moments, "unit" of the first angle
+taken for degrees though it is in radians, "supplement" 180° less the first angle, "shift" of the motion by 0.8 s, and the motion of another "trial".
+"contradiction": said so; "named": an effect, with a probability; "unnamed": neither.
+Exit status 1: a wrong name, or a name for what is spoiled.
 """
 import argparse
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -67,14 +72,66 @@ def judged(hidden, verdict):
     return "right" if len(named) >= len(hidden) else "part"
 
 
-def looked_at(program, sets, models, folder, name, limit):
-    model, options = WORLDS[name.rpartition("_")[0]]
-    trials = sorted(path for path in (sets / name).iterdir() if path.stem.startswith("trial_"))
-    ran = subprocess.run([program, "discover", models / model, *trials[:-1], "--hold-out", trials[-1], *options, "--time-limit", str(limit),
-                          "--out", folder / name, "--force"], capture_output=True, text=True, check=False)
-    if not (folder / name / "verdict.json").exists():
-        sys.exit(f"{name}: {ran.stderr}")
-    return json.loads((folder / name / "verdict.json").read_text())
+def table(path):
+    """Column names, and rows of numbers."""
+    lines = path.read_text().splitlines()
+    begin = lines.index("endheader") + 1 if path.suffix == ".sto" else 0
+    split = (lambda line: line.split("\t")) if path.suffix == ".sto" else (lambda line: line.split(","))
+    return split(lines[begin]), [[float(x) for x in split(line)] for line in lines[begin + 1:] if line.strip()]
+
+
+def spoilt(kind, names, rows, others):
+    """Rows of a trial that contradict themselves; others: those of another trial. None if there is one measured column where all are asked for."""
+    angles = [k for k, name in enumerate(names) if name.endswith("_deg")]
+    measured = angles + [k for k, name in enumerate(names) if name.endswith(".moment")]
+    if kind == "signs" and len(measured) == 1:
+        return None
+    if kind == "shift":
+        return [[late[k] if k in measured else x for k, x in enumerate(row)] for row, late in zip(rows, rows[80:])]
+    if kind == "trial":
+        return [[other[k] if k in measured else x for k, x in enumerate(row)] for row, other in zip(rows, others)]
+    change = {"sign": lambda x: -x, "signs": lambda x: -x, "unit": math.radians, "supplement": lambda x: 180 - x}[kind]
+    return [[change(x) if k in (measured if kind == "signs" else angles[:1]) else x for k, x in enumerate(row)] for row in rows]
+
+
+def spoilt_trials(kind, trials, folder):
+    """The trials with this kind of contradiction, written to a folder; none where the kind does not apply."""
+    tables = [table(path) for path in trials]
+    folder.mkdir(parents=True, exist_ok=True)
+    written = []
+    for i, (names, rows) in enumerate(tables):
+        changed = spoilt(kind, names, rows, tables[(i + 1) % len(tables)][1])
+        if changed is None:
+            return []
+        written.append(folder / f"trial_{i}.csv")
+        written[-1].write_text(",".join(names) + "\n" + "".join(",".join(f"{x:.8g}" for x in row) + "\n" for row in changed))
+    return written
+
+
+def trials_of(folder):
+    return sorted(path for path in folder.iterdir() if path.stem.startswith("trial_"))
+
+
+def looked_at(program, model, options, trials, folder, limit):
+    ran = subprocess.run([program, "discover", model, *trials[:-1], "--hold-out", trials[-1], *options, "--time-limit", str(limit),
+                          "--out", folder, "--force"], capture_output=True, text=True, check=False)
+    if not (folder / "verdict.json").exists():
+        sys.exit(f"{folder.name}: {ran.stderr}")
+    return json.loads((folder / "verdict.json").read_text())
+
+
+def shown_error(verdict):
+    """The error of the held-out trial, over the noise."""
+    held_out = verdict["gap"].get("held_out") or {}
+    after, floor = ([x for key, x in held_out.items() if key.startswith(begin)] for begin in ("rmse_after_", "noise_floor_"))
+    return f"{after[0] / floor[0]:.1f}" if after and after[0] is not None else "–"
+
+
+def row(name, truth, verdict, outcome):
+    agreement = verdict["input_agreement"]["correlation"]
+    sentence = verdict["sentence"].split(". ")[0].rstrip(".")
+    return (f"| {name} | {truth} | {sentence} | {outcome} | {'–' if agreement is None else f'{agreement:.2f}'} | {shown_error(verdict)} | "
+            f"{verdict['processor_s']:.0f} |")
 
 
 def main():
@@ -85,20 +142,31 @@ def main():
     parser.add_argument("--build", default="build/program")
     parser.add_argument("--only", nargs="+", choices=list(HIDDEN), default=list(HIDDEN))
     parser.add_argument("--limit", type=float, default=600)
+    parser.add_argument("--spoil", nargs="+", choices=("sign", "signs", "unit", "supplement", "shift", "trial"), default=[])
     asked = parser.parse_args()
     program = (TOP / asked.build / "apps/fisherhill").resolve()
     asked.folder.mkdir(parents=True, exist_ok=True)
     counts = {}
-    print("| set | hidden | verdict | | agreement of inputs | processor s |\n|---|---|---|---|---|---|", flush=True)
-    for name in asked.only:
-        verdict = looked_at(program, asked.sets, asked.models, asked.folder, name, asked.limit)
-        truth, hidden = HIDDEN[name]
-        outcome = judged(hidden, verdict)
+
+    def tell(name, truth, verdict, outcome):
         counts[outcome] = counts.get(outcome, 0) + 1
-        print(f"| {name} | {truth} | {verdict['sentence'].split('. ')[0]} | {outcome} | {verdict['input_agreement']['correlation'] or float('nan'):.2f} | "
-              f"{verdict['processor_s']:.0f} |", flush=True)
+        print(row(name, truth, verdict, outcome), flush=True)
+
+    print("| set | hidden | verdict | outcome | agreement of inputs | held-out error / noise | processor [s] |\n|---|---|---|---|---|---|---|", flush=True)
+    for name in asked.only:
+        model, options = WORLDS[name.rpartition("_")[0]]
+        trials = trials_of(asked.sets / name)
+        truth, hidden = HIDDEN[name]
+        for kind in asked.spoil:
+            if changed := spoilt_trials(kind, trials, asked.folder / f"{name}-{kind}-trials"):
+                verdict = looked_at(program, asked.models / model, options, changed, asked.folder / f"{name}-{kind}", asked.limit)
+                named = verdict["verdict"] != "unknown" and verdict["effects"] and not verdict["probability_vetoed"]
+                tell(name, f"{truth}; {kind}", verdict, "contradiction" if verdict["input_agreement"]["remedies"] else "named" if named else "unnamed")
+        if not asked.spoil:
+            verdict = looked_at(program, asked.models / model, options, trials, asked.folder / name, asked.limit)
+            tell(name, truth, verdict, judged(hidden, verdict))
     print(", ".join(f"{count} {outcome}" for outcome, count in sorted(counts.items())))
-    sys.exit(1 if counts.get("wrong") else 0)
+    sys.exit(1 if counts.get("wrong") or counts.get("named") else 0)
 
 
 if __name__ == "__main__":

@@ -84,7 +84,11 @@ class Comparison {
  public:
   Comparison(const Model& model, const SystemOptions& options,
              const std::vector<std::string>& inQuestion)
-      : model_(model), options_(options), system_(model, options), inQuestion_(inQuestion) {
+      : model_(model),
+        options_(options),
+        system_(model, options),
+        inQuestion_(inQuestion),
+        driven_(drivenBy(model)) {
     const auto& all = system_.skeleton().coordinates();
     for (const std::string& name : inQuestion) {
       const auto at = std::find_if(all.begin(), all.end(),
@@ -128,10 +132,9 @@ class Comparison {
     if (!(last - first > shortest)) return {};
     Recorded result;
     result.name = std::filesystem::path(trial.file).filename().string();
-    result.driven = std::make_shared<const MusculoskeletalSystem>(
-        MusculoskeletalSystem(withExperimentalConditions(model_, options_, inQuestion_, trial),
-                              options_)
-            .withAllPrescribed());
+    result.driven = trial.conditions.any()
+                        ? drivenBy(withExperimentalConditions(model_, options_, inQuestion_, trial))
+                        : driven_;
     for (double t = first; t < last; t += spacing) result.times.push_back(t);
     const auto n = static_cast<Index>(result.times.size());
     Trial smooth = trial;
@@ -179,6 +182,11 @@ class Comparison {
   }
 
  private:
+  std::shared_ptr<const MusculoskeletalSystem> drivenBy(const Model& model) const {
+    return std::make_shared<const MusculoskeletalSystem>(
+        MusculoskeletalSystem(model, options_).withAllPrescribed());
+  }
+
   MatrixXd courses(const PrescribedMotion& motion, const std::vector<double>& times) const {
     const Index n = system_.skeleton().numCoordinates();
     MatrixXd q = MatrixXd::Zero(n, static_cast<Index>(times.size()));
@@ -211,7 +219,8 @@ class Comparison {
   const SystemOptions& options_;
   MusculoskeletalSystem system_;
   std::vector<std::string> inQuestion_;
-  std::vector<Index> rows_;  ///< of the coordinates in question
+  std::vector<Index> rows_;                              ///< of the coordinates in question
+  std::shared_ptr<const MusculoskeletalSystem> driven_;  ///< without experimental conditions
 };
 
 /// The search for what would make a recording agree with itself.

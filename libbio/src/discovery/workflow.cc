@@ -113,8 +113,6 @@ void searchBeforeBreak(const DiscoveryRequest& request, DiscoveryResult& result)
     second.found = search(request, parts, second);
     Verdict& other = second.found.verdict;
     const int fits = verdict.fits + other.fits;
-    const double wall = result.found.wallSeconds + second.found.wallSeconds;
-    const double processor = result.found.processorSeconds + second.found.processorSeconds;
     if (mayBeAdded(other)) {
       other.vetoed = true;
       other.probability = 0;
@@ -122,8 +120,6 @@ void searchBeforeBreak(const DiscoveryRequest& request, DiscoveryResult& result)
       result = std::move(second);
     }
     result.found.verdict.fits = fits;
-    result.found.wallSeconds = wall;
-    result.found.processorSeconds = processor;
   }
   result.found.verdict.sentence += sentenceOf(
       *result.positionBreak,
@@ -194,7 +190,9 @@ void searchUnlessContradicted(const DiscoveryRequest& request, DiscoveryResult& 
 
 DiscoveryResult discover(const DiscoveryRequest& request) {
   DiscoveryResult result;
+  const info::discover::SearchClock clock;
   searchUnlessContradicted(request, result);
+  clock.writeTo(result.found);
   Verdict& verdict = result.found.verdict;
   const MusculoskeletalProblem& data = *result.data;
   repair(request, result);

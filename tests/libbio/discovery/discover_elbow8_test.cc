@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <random>
@@ -134,6 +135,7 @@ TEST(Discover, UsesWhatComesBeforeAPositionAtWhichTheModelFails) {
   EXPECT_EQ(verdict.finding, info::discover::Finding::named) << verdict.sentence;
   ASSERT_TRUE(result.positionBreak) << verdict.sentence;
   ASSERT_TRUE(result.trialsAreCut) << verdict.sentence;
+  EXPECT_TRUE(std::isfinite(result.inputs.correlation));  // of the whole trials
   EXPECT_NEAR(result.positionBreak->position / degree, 108, 5);
   ASSERT_EQ(verdict.effects.size(), 1u);
   EXPECT_EQ(result.data->candidates()[verdict.effects.front().candidate].id, "swap_TRIlong_BRA");

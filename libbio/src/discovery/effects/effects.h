@@ -57,6 +57,11 @@ info::discover::Candidate candidateAt(const EncompassingModel& model, const Movi
                                       std::vector<std::size_t> quantities,
                                       const std::vector<std::vector<double>>& starts);
 
+/// Id of the gain of a muscle's or a group's electrodes.
+inline std::string gainId(const std::string& name) {
+  return "gain_" + name;
+}
+
 /// Name of the law that an effect adds to a model: "elbow_flexion_visc".
 std::string lawName(const MovingCoordinate& at, const std::string& id);
 

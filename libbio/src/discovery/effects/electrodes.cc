@@ -42,10 +42,6 @@ std::string exchangeId(const std::string& one, const std::string& other) {
   return fmt::format("swap_{}_{}", one, other);
 }
 
-std::string gainId(const std::string& name) {
-  return "gain_" + name;
-}
-
 std::string saturationId(const std::string& name) {
   return "saturated_" + name;
 }

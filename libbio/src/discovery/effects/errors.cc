@@ -120,15 +120,14 @@ void addMuscleErrors(EncompassingModel& model) {
         addBeyond(
             model, x, rule.sd, id, fmt::format("{} of {}", rule.words, group.name),
             fmt::format("The {} of all heads of {} is wrong.", rule.words, group.name),
-            isForce ? std::vector<std::string>{"gain_" + group.name} : std::vector<std::string>{});
+            isForce ? std::vector<std::string>{gainId(group.name)} : std::vector<std::string>{});
       }
       for (const std::size_t i : group.muscles) {
         const std::string& muscle = model.system().muscles()[i].name;
-        addBeyond(
-            model, model.find(nuisanceName(muscle, rule)), rule.sd, rule.id + muscle,
-            fmt::format("{} of {}", rule.words, muscle),
-            fmt::format("The {} of {} is wrong.", rule.words, muscle),
-            isForce ? std::vector<std::string>{"gain_" + muscle} : std::vector<std::string>{});
+        addBeyond(model, model.find(nuisanceName(muscle, rule)), rule.sd, rule.id + muscle,
+                  fmt::format("{} of {}", rule.words, muscle),
+                  fmt::format("The {} of {} is wrong.", rule.words, muscle),
+                  isForce ? std::vector<std::string>{gainId(muscle)} : std::vector<std::string>{});
       }
     }
   }

@@ -83,17 +83,16 @@ SteppedVerdict runTwiceIfNeeded(const MakeAttempt& attempt, double step, double 
   return first;
 }
 
-SteppedVerdict timed(const std::function<SteppedVerdict()>& search) {
-  const auto begin = std::chrono::steady_clock::now();
-  const double used = threadSeconds();
-  SteppedVerdict found = search();
-  found.wallSeconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  found.processorSeconds = threadSeconds() - used;
-  return found;
-}
-
 }  // namespace
+
+SearchClock::SearchClock()
+    : begin_(std::chrono::steady_clock::now()), processor_(threadSeconds()) {}
+
+void SearchClock::writeTo(SteppedVerdict& found) const {
+  found.wallSeconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  found.processorSeconds = threadSeconds() - processor_;
+}
 
 std::function<bool(const Progress&)> progressOfAnother(
     std::function<bool(const Progress&)> progress) {
@@ -104,7 +103,10 @@ std::function<bool(const Progress&)> progressOfAnother(
 }
 
 SteppedVerdict runAtShorterSteps(const MakeAttempt& attempt, double step, double shortest) {
-  return timed([&] { return runTwiceIfNeeded(attempt, step, shortest); });
+  const SearchClock clock;
+  SteppedVerdict found = runTwiceIfNeeded(attempt, step, shortest);
+  clock.writeTo(found);
+  return found;
 }
 
 SteppedVerdict searchTrials(const TrialSearch& search,
@@ -114,10 +116,12 @@ SteppedVerdict searchTrials(const TrialSearch& search,
   for (std::size_t i = search.numTrials - search.numHeldOut; i < search.numTrials; ++i)
     options.heldOut.push_back(static_cast<int>(i));
   const double first = search.step.value_or(search.firstStep);
-  if (search.onlyNominal)
-    return timed([&] {
-      return SteppedVerdict{withoutSearch(problemAt(first), options), options, first};
-    });
+  if (search.onlyNominal) {
+    const SearchClock clock;
+    SteppedVerdict found{withoutSearch(problemAt(first), options), options, first};
+    clock.writeTo(found);
+    return found;
+  }
   return runAtShorterSteps(
       [&](double step) {
         return Attempt{problemAt(step), options};

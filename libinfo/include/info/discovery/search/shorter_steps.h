@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <optional>
 
@@ -18,8 +19,20 @@ struct SteppedVerdict {
   Verdict verdict;
   Options options;
   double step = 0;              ///< [s]
-  double wallSeconds = 0;       ///< of all attempts
-  double processorSeconds = 0;  ///< of all attempts, which have one thread
+  double wallSeconds = 0;       ///< of the whole search
+  double processorSeconds = 0;  ///< of the whole search, which has one thread
+};
+
+/// A clock that starts with its construction.
+class SearchClock {
+ public:
+  SearchClock();
+  /// Writes the wall time and this thread's processor time since the start.
+  void writeTo(SteppedVerdict& found) const;
+
+ private:
+  std::chrono::steady_clock::time_point begin_;
+  double processor_;  ///< of this thread [s]
 };
 
 /// Progress of a search that follows another: the last hundredth of the whole.
