@@ -231,7 +231,9 @@ class Remedies {
       : comparison_(comparison), names_(names), trials_(trials), goOn_(goOn) {}
 
   void run(InputAgreement& result) {
-    for (std::size_t i = 0; i < names_.size(); ++i) ofCoordinate(i);
+    ofSigns();
+    for (std::size_t i = 0; i < names_.size(); ++i)
+      if (comparison_.isRotation(i)) ofAngle(i);
     ofTime();
     ofTrials();
     if (stopped_) return;
@@ -267,15 +269,40 @@ class Remedies {
     consider(std::move(clause), changed);
   }
 
-  void ofCoordinate(std::size_t i) {
+  /// Of each channel, and of each two together.
+  void ofSigns() {
+    struct Channel {
+      std::string name;
+      std::size_t coordinate;
+      bool isMoment;
+    };
+    std::vector<Channel> channels;
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      channels.push_back({names_[i], i, false});
+      if (!comparison_.isFree(i)) channels.push_back({names_[i] + ".moment", i, true});
+    }
+    const auto reverse = [&](Recorded& trial, const Channel& channel) {
+      if (channel.isMoment)
+        trial.moment.row(static_cast<Index>(channel.coordinate)) *= -1;
+      else
+        trial.q.row(comparison_.rows()[channel.coordinate]) *= -1;
+    };
+    for (std::size_t a = 0; a < channels.size(); ++a) {
+      considerAll(fmt::format("the sign of {} is reversed", channels[a].name),
+                  [&](Recorded& trial) { reverse(trial, channels[a]); });
+      for (std::size_t b = a + 1; b < channels.size(); ++b)
+        considerAll(
+            fmt::format("the signs of {} and {} are reversed", channels[a].name, channels[b].name),
+            [&](Recorded& trial) {
+              reverse(trial, channels[a]);
+              reverse(trial, channels[b]);
+            });
+    }
+  }
+
+  void ofAngle(std::size_t i) {
     const Index row = comparison_.rows()[i];
     const std::string& name = names_[i];
-    considerAll(fmt::format("the sign of {} is reversed", name),
-                [&](Recorded& trial) { trial.q.row(row) *= -1; });
-    if (!comparison_.isFree(i))
-      considerAll(fmt::format("the sign of {}.moment is reversed", name),
-                  [&](Recorded& trial) { trial.moment.row(static_cast<Index>(i)) *= -1; });
-    if (!comparison_.isRotation(i)) return;
     considerAll(
         fmt::format("{} is 180 degrees minus what was recorded", name),
         [&](Recorded& trial) { trial.q.row(row) = std::numbers::pi - trial.q.row(row).array(); });

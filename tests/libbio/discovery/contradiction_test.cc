@@ -164,6 +164,17 @@ TEST(InputAgreement, NamesAReversedMoment) {
               testing::Contains("the sign of elbow_flexion.moment is reversed"));
 }
 
+TEST(InputAgreement, NamesTwoSignsThatAreReversedTogether) {
+  Recordings recordings = onDynamometer();
+  for (Trial& trial : recordings.trials)
+    for (MeasuredChannel* channel : {&trial.prescribed.front(), &trial.measured.back()})
+      channel->values *= -1;
+  const InputAgreement agreement = recordings.agreement();
+  ASSERT_FALSE(agreement.remedies.empty());
+  EXPECT_EQ(agreement.remedies.front(),
+            "the signs of elbow_flexion and elbow_flexion.moment are reversed");
+}
+
 TEST(InputAgreement, IsNotToldWithoutTheMotion) {
   Recordings recordings;
   recordings.trials.front().measured.clear();
