@@ -59,11 +59,16 @@ WatchedSearch::WatchedSearch(bool quiet, const std::optional<double>& limit) {
                std::chrono::duration<double>(std::min(*limit, longestLimit)));
 }
 
-std::function<bool(const info::discover::Progress&)> WatchedSearch::progress() {
-  return [this](const info::discover::Progress& progress) {
-    interrupted_ = interruptionRequested();
-    outOfTime_ = end_ && std::chrono::steady_clock::now() > *end_;
-    const bool goesOn = !interrupted_ && !outOfTime_;
+bool WatchedSearch::goesOn() {
+  interrupted_ = interruptionRequested();
+  outOfTime_ = end_ && std::chrono::steady_clock::now() > *end_;
+  return !interrupted_ && !outOfTime_;
+}
+
+void WatchedSearch::watch(info::discover::Options& options) {
+  options.goOn = [this] { return goesOn(); };
+  options.progress = [this](const info::discover::Progress& progress) {
+    const bool goesOn = this->goesOn();
     if (goesOn && bar_) bar_->update(progress.fraction);
     return goesOn;
   };

@@ -26,17 +26,19 @@ void addTimeLimit(CLI::App& options, std::optional<double>& limit);
 /// end it with the result so far.
 class WatchedSearch {
  public:
-  /// @param limit [s] of elapsed time, from now on; it ends with the fit that is then made
+  /// @param limit [s] of elapsed time, from now on
   WatchedSearch(bool quiet, const std::optional<double>& limit);
 
-  /// For info::discover::Options::progress. Refers to this object.
-  std::function<bool(const info::discover::Progress&)> progress();
+  /// Lets the options call this object, which must outlive the search.
+  void watch(info::discover::Options& options);
   bool wasInterrupted() const { return interrupted_; }
   bool ranOutOfTime() const { return outOfTime_; }
   /// Takes the progress bar away.
   void end() { bar_.reset(); }
 
  private:
+  bool goesOn();
+
   std::optional<ProgressBar> bar_;
   std::optional<std::chrono::steady_clock::time_point> end_;
   bool interrupted_ = false, outOfTime_ = false;

@@ -182,7 +182,7 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
   asked.search.sds = noiseOf(request, outputs);
   asked.provenance = provenanceOf(summary);
   WatchedSearch watch(context.quiet, request.timeLimit);
-  asked.search.progress = watch.progress();
+  watch.watch(asked.search);
   bio::discover::DiscoveryResult result = bio::discover::discover(asked);
   watch.end();
   const bio::discover::MusculoskeletalProblem& data = *result.data;

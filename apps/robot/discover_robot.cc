@@ -137,7 +137,7 @@ class RobotSearch {
     asked.problem = problemOptions(channels);
     asked.search = engineOptions(request_.maxEffects, request_.inputScatter);
     WatchedSearch watch(context_.quiet, request_.timeLimit);
-    asked.search.progress = watch.progress();
+    watch.watch(asked.search);
     const info::robot::DiscoveryResult result = info::robot::discover(asked);
     const info::discover::SteppedVerdict& found = result.found;
     const RobotProblem& data = *result.data;

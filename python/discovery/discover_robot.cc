@@ -120,7 +120,7 @@ py::object discoverRobot(const std::string& system, std::vector<RobotTrial> tria
   asked.search = searchOptions(maxEffects, inputScatter);
   info::robot::DiscoveryResult result;
   interruptible([&](const std::atomic<bool>& goOn) {
-    asked.search.progress = [&](const info::discover::Progress&) { return goOn.load(); };
+    asked.search.goOn = [&] { return goOn.load(); };
     result = info::robot::discover(asked);
   });
   const info::robot::RobotProblem& data = *result.data;

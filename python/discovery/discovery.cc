@@ -188,7 +188,7 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
     asked.provenance.data.push_back(fmt::format("{} SHA-256 {}", trial.file, trial.sha256));
   bio::discover::DiscoveryResult result;
   interruptible([&](const std::atomic<bool>& goOn) {
-    asked.search.progress = [&](const info::discover::Progress&) { return goOn.load(); };
+    asked.search.goOn = [&] { return goOn.load(); };
     result = bio::discover::discover(asked);
   });
   const MusculoskeletalProblem& data = *result.data;

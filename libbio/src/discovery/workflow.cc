@@ -159,9 +159,10 @@ void repair(const DiscoveryRequest& request, DiscoveryResult& result) {
 
 /// No search where the recording contradicts itself: every effect would be one that imitates that.
 void searchUnlessContradicted(const DiscoveryRequest& request, DiscoveryResult& result) {
+  const info::discover::Options& options = request.search;
   const auto goOn = [&] {
-    const auto& progress = request.search.progress;
-    return !progress || progress({Stage::calibrate, 0, "excitations and motion"});
+    return (!options.goOn || options.goOn()) &&
+           (!options.progress || options.progress({Stage::calibrate, 0, "excitations and motion"}));
   };
   result.inputs =
       inputAgreement(request.model, request.system, request.coordinates, request.trials, goOn);

@@ -7,9 +7,11 @@
 #include <set>
 #include <stdexcept>
 
+#include "discovery/finalists.h"
 #include "discovery/judgement/held_out_trials.h"
 #include "discovery/judgement/replication.h"
 #include "discovery/likelihood/selected_samples.h"
+#include "discovery/likelihood/watched_problem.h"
 #include "discovery/nonparametric/nonparametric_force.h"
 #include "discovery/nonparametric/race_formula.h"
 #include "discovery/search/select.h"
@@ -31,7 +33,9 @@ namespace {
 class Work {
  public:
   Work(const DiscoveryProblem& data, const Options& options, RecordedNoise noise)
-      : data_(data), options_(options), trials_(fittedTrials(data, options)) {
+      : data_(data, [this] { return stopped_ || !options_.goOn || options_.goOn(); }),
+        options_(options),
+        trials_(fittedTrials(data, options)) {
     verdict_.noise = std::move(noise);
   }
 
@@ -50,6 +54,8 @@ class Work {
       verdict_.reached = Stage::finished;
       report(Stage::finished, 1, "");
     } catch (const Stopped&) {
+      stopped_ = true;
+      forgetDecision();
       verdict_.sentence = "Stopped before the end" + keepWhatIsThere() + ".";
     }
     if (search_) verdict_.fits = search_->fits() + nonparametricFits_;
@@ -60,6 +66,14 @@ class Work {
   void report(Stage stage, double fraction, const std::string& doing) {
     fraction_ = std::max(fraction_, fraction);
     if (options_.progress && !options_.progress({stage, fraction_, doing})) throw Stopped();
+  }
+
+  // No conclusion stands before it has been tested to the end.
+  void forgetDecision() {
+    verdict_.finding = Finding::none;
+    verdict_.effects.clear();
+    verdict_.probability = 0;
+    verdict_.vetoed = verdict_.surrogate = false;
   }
 
   // The fits before the search was stopped, and the score map of the base model. The sentence names
@@ -137,7 +151,6 @@ class Work {
     return true;
   }
 
-  // results of the base model
   void base() {
     const Entry& entry = search_->at({});
     verdict_.base = entry.fit.values;
@@ -149,32 +162,7 @@ class Work {
   }
 
   void judge() {
-    const double ofBase = search_->at({}).score;
-    verdict_.finalists.clear();
-    for (const auto& [effects, entry] : search_->entries()) {
-      if (!entry.works()) continue;
-      Finalist f;
-      f.effects = effects;
-      f.logEvidence = entry.score - ofBase;
-      f.latentSize = entry.fit.noise.latent;
-      f.significance = search_->significance(entry);
-      for (const std::size_t e : effects)
-        for (const Estimate& x : estimatesOf(entry.fit, data_.candidates()[e].quantities, data_))
-          f.estimates.push_back(x);
-      verdict_.finalists.push_back(f);
-    }
-    const double rarity =
-        std::log(0.5 / std::max(1.0, static_cast<double>(data_.candidates().size())));
-    const auto posterior = [&](const Finalist& f) {
-      return f.logEvidence + rarity * static_cast<double>(f.effects.size());
-    };
-    std::sort(verdict_.finalists.begin(), verdict_.finalists.end(),
-              [&](const Finalist& a, const Finalist& b) { return posterior(a) > posterior(b); });
-    double sum = 0;
-    for (const Finalist& f : verdict_.finalists)
-      sum += std::exp(posterior(f) - posterior(verdict_.finalists[0]));
-    for (Finalist& f : verdict_.finalists)
-      f.probability = std::exp(posterior(f) - posterior(verdict_.finalists[0])) / sum;
+    verdict_.finalists = finalistsOf(*search_);
     base();  // a better base may have been found since
     const Entry& leader = search_->at(chosen_);
     if (!chosen_.empty()) {
@@ -366,8 +354,9 @@ class Work {
     return {meanSquare, chiSquareQuantile(options_.level, n) / n * std::exp(3.29 * test_.sdError)};
   }
 
-  const DiscoveryProblem& data_;
+  WatchedProblem data_;
   const Options& options_;
+  bool stopped_ = false;
   std::vector<int> trials_;
   AdequacyOptions test_;
   std::optional<Search> search_;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "info/discovery/search/shorter_steps.h"
@@ -29,6 +30,27 @@ class Coarse : public LinearDisagreement {
  private:
   double error_;
 };
+
+// Within a fit, too, and then nothing is asked any more.
+TEST(Discover, StopsBeforeAnySimulation) {
+  const LinearDisagreement data = drawn(5, 2, 1.1);
+  Options options = optionsOfDrawn();
+  int asked = 0, allowed = std::numeric_limits<int>::max();
+  options.goOn = [&] { return ++asked <= allowed; };
+  const Verdict whole = run(data, options);
+  EXPECT_EQ(whole.reached, Stage::finished);
+  const int needed = asked;
+  ASSERT_GT(needed, 100);
+  for (allowed = 0; allowed < needed; allowed += 1 + needed / 50) {
+    asked = 0;
+    const Verdict v = run(data, options);
+    EXPECT_NE(v.reached, Stage::finished);
+    EXPECT_EQ(asked, allowed + 1);
+    EXPECT_THAT(v.sentence, testing::HasSubstr("Stopped before the end"));
+    EXPECT_TRUE(v.effects.empty());
+    EXPECT_TRUE(v.base.size() == 0 || v.base.allFinite());
+  }
+}
 
 TEST(RunAtShorterSteps, HalvesTheStepUntilItNoLongerMattersOrIsTooShort) {
   std::optional<Coarse> data;

@@ -72,6 +72,9 @@ struct Options {
   /// Called between fits; returning false ends the search, and the verdict holds the results so
   /// far.
   std::function<bool(const Progress&)> progress;
+  /// Asked before every simulation, a millisecond or so each: false ends the search as progress
+  /// does. May be empty.
+  std::function<bool()> goOn;
 };
 
 /// The estimate of one quantity in a hypothesis.

@@ -8,24 +8,28 @@ using Eigen::VectorXd;
 
 SelectedSamples::SelectedSamples(const DiscoveryProblem& data,
                                  const std::vector<std::vector<std::size_t>>& kept)
-    : data_(data), kept_(kept) {
-  for (int trial = 0; trial < data.numTrials(); ++trial) {
-    OfTrial one;
-    const auto& outputs = data.outputOfSample(trial);
-    for (const std::size_t k : kept.at(static_cast<std::size_t>(trial))) {
-      one.samples.push_back(static_cast<Index>(k));
-      one.times.push_back(data.times(trial)[k]);
-      if (!outputs.empty()) one.outputs.push_back(outputs[k]);
-    }
-    one.measured = data.measured(trial)(one.samples);
-    trials_.push_back(std::move(one));
-  }
+    : ForwardingProblem(data), kept_(kept) {
+  select();
 }
 
 SelectedSamples::SelectedSamples(std::unique_ptr<DiscoveryProblem> data,
                                  const std::vector<std::vector<std::size_t>>& kept)
-    : SelectedSamples(*data, kept) {
-  owned_ = std::move(data);
+    : ForwardingProblem(std::move(data)), kept_(kept) {
+  select();
+}
+
+void SelectedSamples::select() {
+  for (int trial = 0; trial < data().numTrials(); ++trial) {
+    OfTrial one;
+    const auto& outputs = data().outputOfSample(trial);
+    for (const std::size_t k : kept_.at(static_cast<std::size_t>(trial))) {
+      one.samples.push_back(static_cast<Index>(k));
+      one.times.push_back(data().times(trial)[k]);
+      if (!outputs.empty()) one.outputs.push_back(outputs[k]);
+    }
+    one.measured = data().measured(trial)(one.samples);
+    trials_.push_back(std::move(one));
+  }
 }
 
 namespace {
@@ -49,7 +53,7 @@ DiscoveryProblem::Prediction SelectedSamples::predict(int trial, const VectorXd&
                                                       const VectorXd& latent,
                                                       const std::vector<std::size_t>& wanted,
                                                       bool latentToo) const {
-  return selected(data_.predict(trial, values, latent, wanted, latentToo), of(trial).samples);
+  return selected(data().predict(trial, values, latent, wanted, latentToo), of(trial).samples);
 }
 
 /// A simulation of which only the selected samples are seen.
@@ -69,34 +73,34 @@ class SelectedSamples::Some final : public Simulation {
 std::unique_ptr<DiscoveryProblem::Simulation> SelectedSamples::simulated(
     int trial, const VectorXd& values, const VectorXd& latent,
     const std::vector<std::size_t>& wanted, bool latentToo) const {
-  auto all = data_.simulated(trial, values, latent, wanted, latentToo);
+  auto all = data().simulated(trial, values, latent, wanted, latentToo);
   if (!all) return nullptr;
   return std::make_unique<Some>(std::move(all), of(trial).samples);
 }
 
 VectorXd SelectedSamples::outputs(int trial, const VectorXd& values, const VectorXd& latent) const {
-  return data_.outputs(trial, values, latent)(of(trial).samples);
+  return data().outputs(trial, values, latent)(of(trial).samples);
 }
 
 VectorXd SelectedSamples::refinedOutputs(int trial, const VectorXd& values) const {
-  const VectorXd all = data_.refinedOutputs(trial, values);
+  const VectorXd all = data().refinedOutputs(trial, values);
   return all.size() == 0 ? all : VectorXd(all(of(trial).samples));
 }
 
 std::unique_ptr<DiscoveryProblem> SelectedSamples::nudged(double frequency) const {
-  auto held = data_.nudged(frequency);
+  auto held = data().nudged(frequency);
   if (!held) return nullptr;
   return std::make_unique<SelectedSamples>(std::move(held), kept_);
 }
 
 MatrixXd SelectedSamples::inputs(int trial) const {
-  return data_.inputs(trial)(of(trial).samples, Eigen::all);
+  return data().inputs(trial)(of(trial).samples, Eigen::all);
 }
 
 std::unique_ptr<DiscoveryProblem> SelectedSamples::withFormula(
     std::size_t axis, const std::vector<FormulaTerm>& terms,
     const std::vector<std::size_t>& kept) const {
-  auto widened = data_.withFormula(axis, terms, kept);
+  auto widened = data().withFormula(axis, terms, kept);
   if (!widened) return nullptr;
   return std::make_unique<SelectedSamples>(std::move(widened), kept_);
 }

@@ -16,9 +16,6 @@
 
 namespace info::discover {
 
-/// Thrown internally if the caller's progress function requests a stop.
-struct Stopped {};
-
 /// A hypothesis with the optimal size of its latent force.
 struct Entry {
   Effects effects;
