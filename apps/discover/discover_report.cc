@@ -121,10 +121,12 @@ class Writer {
                           : ""));
     }
     if (verdict.vetoed) {
-      say(verdict.after.sized
-              ? "The held-out errors are larger than the uncertainty of the parameters explains, "
-                "so no probability is given."
-              : "The size of the residual does not match the noise, so no probability is given.");
+      const bool isVague = verdict.heldOut && verdict.heldOut->isVague(f_.options.vague);
+      say(!verdict.after.sized
+              ? "The size of the residual does not match the noise, so no probability is given."
+          : isVague ? "The held-out trials are hardly predicted, so no probability is given."
+                    : "The held-out errors are larger than the uncertainty of the parameters "
+                      "explains, so no probability is given.");
     }
   }
 

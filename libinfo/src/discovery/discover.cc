@@ -249,7 +249,7 @@ class Work {
       verdict_.unknown = describeUnknown(search_->likelihood(), smoothing);
       verdict_.formula = raceFormula(*search_, *verdict_.unknown, chosen_, optionsOfFormula());
     }
-    verdict_.sentence = verdictSentence(data_, verdict_, options_.farOff, !chosen_.empty());
+    verdict_.sentence = verdictSentence(data_, verdict_, options_, !chosen_.empty());
   }
 
   void collectRivals() {
@@ -325,6 +325,7 @@ class Work {
     judgement.strangeBefore = !verdict_.heldOutBefore->expected();
     judgement.strangeAfter = !verdict_.heldOutAfter->expected();
     judgement.heldOutFarOff = other.probability && *other.probability < options_.farOff;
+    judgement.heldOutVague = !chosen_.empty() && other.isVague(options_.vague);
     // by more than chance; since the evidence is inaccurate for a base model that fits badly, the
     // simulation must be no worse either
     judgement.heldOutWorse =

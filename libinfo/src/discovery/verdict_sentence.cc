@@ -13,9 +13,9 @@ constexpr double kStep = 0.8;           // share of its variance between two lev
 
 class VerdictSentence {
  public:
-  VerdictSentence(const DiscoveryProblem& data, const Verdict& verdict, double farOff,
+  VerdictSentence(const DiscoveryProblem& data, const Verdict& verdict, const Options& options,
                   bool somethingChosen)
-      : data_(data), verdict_(verdict), farOff_(farOff), somethingChosen_(somethingChosen) {}
+      : data_(data), verdict_(verdict), options_(options), somethingChosen_(somethingChosen) {}
 
   // The scatter attributed to noise of the inputs, on which the effects found depend.
   std::string scatter() const {
@@ -26,11 +26,19 @@ class VerdictSentence {
 
   std::string farOff() const {
     if (!verdict_.heldOut || !verdict_.heldOut->probability ||
-        !(*verdict_.heldOut->probability < farOff_))
+        !(*verdict_.heldOut->probability < options_.farOff))
       return "";
     return fmt::format(
         " However, the held-out errors are larger than expected by chance (p = {:.1g}).",
         *verdict_.heldOut->probability);
+  }
+
+  std::string vague() const {
+    if (!verdict_.heldOut || !verdict_.heldOut->isVague(options_.vague)) return "";
+    return fmt::format(
+        " The held-out trials confirm little: they are predicted no better than to {:.1f} times "
+        "their noise.",
+        *verdict_.heldOut->expected / verdict_.heldOut->floor);
   }
 
   // That the held-out trials show the same effects, though not with the same parameters.
@@ -73,14 +81,14 @@ class VerdictSentence {
       case Finding::none:
         return "No missing effect above the detectable size." + scatter() + farOff();
       case Finding::parameter:
-        return "Parameter error: " + names + "." + scatter() + farOff();
+        return "Parameter error: " + names + "." + scatter() + farOff() + vague();
       case Finding::named:
       case Finding::ambiguous:
         return "Missing: " + names +
                (verdict_.vetoed && !verdict_.after.sized
                     ? "; the size of the residual does not match the noise."
                     : ".") +
-               scatter() + replicated() + farOff();
+               scatter() + replicated() + farOff() + vague();
       case Finding::unknown:
         return "The model lacks an effect that is not in the catalogue." +
                (names.empty() ? std::string()
@@ -154,15 +162,15 @@ class VerdictSentence {
  private:
   const DiscoveryProblem& data_;
   const Verdict& verdict_;
-  double farOff_;
+  const Options& options_;
   bool somethingChosen_;
 };
 
 }  // namespace
 
-std::string verdictSentence(const DiscoveryProblem& data, const Verdict& verdict, double farOff,
-                            bool somethingChosen) {
-  const VerdictSentence text(data, verdict, farOff, somethingChosen);
+std::string verdictSentence(const DiscoveryProblem& data, const Verdict& verdict,
+                            const Options& options, bool somethingChosen) {
+  const VerdictSentence text(data, verdict, options, somethingChosen);
   return text.sentence() + text.samples();
 }
 

@@ -9,9 +9,8 @@
 namespace info::discover {
 
 /// A verdict in one or a few sentences, with which samples were not used.
-/// @param farOff  Options::farOff
 /// @param somethingChosen  whether the search ended with an effect, named or not
-std::string verdictSentence(const DiscoveryProblem& data, const Verdict& verdict, double farOff,
-                            bool somethingChosen);
+std::string verdictSentence(const DiscoveryProblem& data, const Verdict& verdict,
+                            const Options& options, bool somethingChosen);
 
 }  // namespace info::discover

@@ -179,10 +179,12 @@ TEST(Decide, CallsALeaderASurrogateWhereSomethingIsLeft) {
   }
 }
 
-TEST(Decide, LetsInnovationsOfTheWrongSizeAndHeldOutTrialsFarOffVetoTheProbability) {
-  for (const bool size : {true, false}) {
+TEST(Decide, LetsInnovationsOfTheWrongSizeAndHeldOutTrialsFarOffOrVagueVetoTheProbability) {
+  for (const int why : {0, 1, 2}) {
     Judgement j = raced({{{0}, 30.0}}, {0});
-    (size ? j.after.sized : j.heldOutFarOff) = !size;
+    j.after.sized = why != 0;
+    j.heldOutFarOff = why == 1;
+    j.heldOutVague = why == 2;
     const Decision d = decide(catalogue(), j, {});
     EXPECT_EQ(d.finding, Finding::named);
     EXPECT_TRUE(d.vetoed);

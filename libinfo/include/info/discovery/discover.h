@@ -66,6 +66,10 @@ struct Options {
   /// If errors as large as those of the held-out trials are less probable than this, the verdict
   /// says so and gives no probability of an effect.
   double farOff = 0.01;
+  /// If the error expected of the held-out trials, from the noise and the uncertainty of what was
+  /// fitted, is larger than this many standard deviations of the noise, their agreement confirms
+  /// nothing: the verdict says so and gives no probability of an effect.
+  double vague = 3;
   /// Smallest share of the excess squared error that effects must explain in simulation to be
   /// named.
   double leastExplained = 0.05;
@@ -179,8 +183,9 @@ struct Verdict {
   std::vector<NamedEffect> effects;  ///< in the order they were found; for unknown: the proxy
   double probability = 0;            ///< of all effects together; 0 if none is given
   /// Effects are named, but without a probability: the innovations have the wrong size, the errors
-  /// of the held-out trials are improbably large (Options::farOff), or these trials show the
-  /// effects only with parameters of their own (Replication).
+  /// of the held-out trials are improbably large (Options::farOff), no agreement with them would
+  /// confirm anything (Options::vague), or these trials show the effects only with parameters of
+  /// their own (Replication).
   bool vetoed = false;
   bool surrogate = false;  ///< finding unknown: `effects` is only a proxy for the missing effect
   /// Nothing was found without the held-out trials, although their errors were too large. All

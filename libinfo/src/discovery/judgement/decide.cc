@@ -100,7 +100,7 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
     return decision;
   }
   decision.finding = !alone ? Finding::ambiguous : parameters ? Finding::parameter : Finding::named;
-  if (!after.sized || judgement.heldOutFarOff || contradicted) {
+  if (!after.sized || judgement.heldOutFarOff || judgement.heldOutVague || contradicted) {
     decision.vetoed = true;
     decision.probability = 0;
   }

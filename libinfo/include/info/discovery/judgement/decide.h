@@ -19,6 +19,7 @@ struct Judgement {
   bool heldOutWorse = false;       ///< held-out trials are evidence against the chosen effects
   bool replicated = false;         ///< but they show the same effects: Replication::replicated
   bool heldOutFarOff = false;      ///< their simulation errors are improbable: Options::farOff
+  bool heldOutVague = false;       ///< they are hardly predicted: Options::vague
   bool nonparametricWins = false;  ///< NonparametricForce::wins
   /// Share of the base model's excess squared error that the chosen effects explain:
   /// ExcessError::closedFromCalibrated.
@@ -48,10 +49,10 @@ struct Decision {
 /// - Chosen: each forms a class with its declared equivalents and with all alternatives whose log
 ///   evidence is at most `classWidth` lower. If every class has one member: `named`, or `parameter`
 ///   if all are errors of parameters; otherwise `ambiguous`. No probability is given if the
-///   innovations have the wrong size, the errors of held-out trials are improbably large, or the
-///   effects were only replicated there. The probability of an effect is its share of exp(log Z)
-///   among the alternatives that were fitted in its place; declared equivalents at most
-///   `classWidth` behind count as much as the leader.
+///   innovations have the wrong size, the errors of held-out trials are improbably large or would
+///   be hardly less for any other effect, or the effects were only replicated there. The
+///   probability of an effect is its share of exp(log Z) among the alternatives that were fitted in
+///   its place; declared equivalents at most `classWidth` behind count as much as the leader.
 Decision decide(const std::vector<Candidate>& candidates, const Judgement& judgement,
                 const Options& options);
 

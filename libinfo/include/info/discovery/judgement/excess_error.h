@@ -24,6 +24,9 @@ struct ExcessError {
   /// 1 − (after² − floor²)/(before² − floor²); empty if there is no gap to close: before² <
   /// 1.2·floor², three standard deviations of a mean square over 450 samples
   std::optional<double> closedFromCalibrated, closedFromNominal;
+
+  /// Whether an error of so many σ_y or more is expected.
+  bool isVague(double most) const { return expected && *expected > most * floor; }
 };
 
 /// Root mean square difference of simulation (without latent force) and data of each output, over
