@@ -26,12 +26,14 @@ fisherhill_quick(RobotsSuite sh -c
   "rm -rf ${quick}/robots && validation/discovery/robots_suite ${PROJECT_BINARY_DIR} ${quick}/robots quick && \
 test -s ${quick}/robots/double-pendulum/verdicts/s41000/verdict.json")
 set_tests_properties(Quick.RobotsSuite PROPERTIES TIMEOUT 300)
-# one short set of two joints, one of a torque
-fisherhill_quick(TwoJoints sh -c "rm -rf ${quick}/joints && ${python} validation/discovery/joints_and_torque.py \
---build ${PROJECT_BINARY_DIR} --sets 1 --seconds 2 --seed 6 --world joints ${quick}/joints")
-fisherhill_quick(Torque sh -c "rm -rf ${quick}/torque && ${python} validation/discovery/joints_and_torque.py \
---build ${PROJECT_BINARY_DIR} --sets 1 --seconds 2 --seed 1 --world torque ${quick}/torque")
-set_tests_properties(Quick.TwoJoints Quick.Torque PROPERTIES PASS_REGULAR_EXPRESSION "1 right")
+# one short set of two joints, one of a torque: made, looked at, scored
+function(fisherhill_quick_family name family seed)
+  fisherhill_quick(${name} sh -c "rm -rf ${quick}/${family}; ${python} validation/discovery/families/make_sets.py \
+--build ${PROJECT_BINARY_DIR} --family ${family} --seed ${seed} --sets 1 --seconds 2 --jobs 1 ${quick}/${family}")
+  set_tests_properties(Quick.${name} PROPERTIES PASS_REGULAR_EXPRESSION "truth inside the class, of those detected . 1 of 1")
+endfunction()
+fisherhill_quick_family(TwoJoints shoulder 99)
+fisherhill_quick_family(Torque torque 101)
 find_program(mpirun mpirun)
 if(mpirun AND TARGET fisherhill-mpi)
   fisherhill_quick(KillRanks validation/robustness/kill_ranks ${program} 1 1)

@@ -81,6 +81,31 @@ TEST(Effects, ThatTheModelHasAreNoCandidates) {
   EXPECT_TRUE(c.data.encompassing().knows("coulomb"));
 }
 
+TEST(Effects, ThatTheModelHasAreOfferedAsTheirNumbers) {
+  const Case c(0.3, "elbow8_passive");
+  const EncompassingModel& model = c.data.encompassing();
+  for (const char* id : {"damping_elbow_flexion_damping", "stiffness_elbow_flexion_ligaments"}) {
+    const Candidate& candidate = c.find(id);
+    EXPECT_EQ(candidate.kind, info::discover::EffectKind::parameter);
+    EXPECT_EQ(model.nominal()[static_cast<Index>(candidate.quantities.at(0))], 1);
+    const Model twice = addEffects(c.elbow.model, ShippedElbow::options(), "elbow_flexion",
+                                   {{id, VectorXd::Constant(1, 2.0), {}, 0, 0}}, {"a test", {}})
+                            .model;
+    const bool damps = candidate.id.starts_with("damping");
+    const auto& before = c.elbow.model.limitForces.at(damps ? 1 : 0);
+    const auto& after = twice.limitForces.at(damps ? 1 : 0);
+    EXPECT_EQ(after.damping, damps ? 2 * before.damping : before.damping);
+    EXPECT_EQ(after.upperStiffness, damps ? before.upperStiffness : 2 * before.upperStiffness);
+    EXPECT_EQ(after.lowerStiffness, damps ? before.lowerStiffness : 2 * before.lowerStiffness);
+  }
+  EXPECT_GT(
+      (c.outputs(c.with(c.find("damping_elbow_flexion_damping"))) - c.outputs(c.nominal())).norm(),
+      1e-6);
+  // nothing to multiply
+  EXPECT_FALSE(model.knows("stiffness_elbow_flexion_damping"));
+  EXPECT_FALSE(model.knows("damping_elbow_flexion_ligaments"));
+}
+
 // Bit for bit, whatever the quantities that shape it are, and though its law is switched on.
 TEST(Effects, ChangeNothingAtAmplitudeZero) {
   const Case c(0.2);

@@ -135,6 +135,7 @@ class EncompassingModel {
   std::size_t number(const ParameterTarget& target, double nominal);
   /// Elementary numbers of a parameter of the model, by name.
   std::vector<Meaning::Part> numbers(const std::string& parameter);
+  double valueOf(const Meaning::Part& part) const { return numbers_.at(part.number).nominal; }
   std::size_t add(Quantity quantity, Meaning meaning);
   /// Lets a quantity change one more number.
   void extend(std::size_t quantity, Meaning::Part part) {

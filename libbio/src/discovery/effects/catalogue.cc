@@ -46,6 +46,7 @@ void addMassError(EncompassingModel& model);
 void addActivationError(EncompassingModel& model);
 void addMuscleErrors(EncompassingModel& model);
 void addTendonCompliance(EncompassingModel& model);
+void addForceErrors(EncompassingModel& model, const MovingCoordinate& at);
 void addWrapErrors(EncompassingModel& model);
 void addSensorErrors(EncompassingModel& model, std::size_t sensor);
 
@@ -83,6 +84,7 @@ const std::vector<EffectEntry>& effectEntries() {
       {"tau", addActivationError},
       {"muscles", addMuscleErrors},
       {"tendon", addTendonCompliance},
+      {"forces", addForceErrors},
       {"wraps", addWrapErrors},
       {"sensor", addSensorErrors},
   };

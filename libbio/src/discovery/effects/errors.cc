@@ -152,6 +152,38 @@ void addTendonCompliance(EncompassingModel& model) {
                       EffectKind::structure, {x}, {{1.2}, {0.8}}));
 }
 
+// What the model already has is offered as its number. The deviation is a judgement: passive
+// torques of healthy joints differ by a factor of two between people (Engin & Chen 1987).
+void addForceErrors(EncompassingModel& model, const MovingCoordinate& at) {
+  constexpr double negligible = 1e-6;  // SI; a limit that only damps has a stiffness, too
+  const auto offer = [&](const std::string& number, const std::string& words,
+                         const std::string& force, const std::vector<const char*>& parameters) {
+    std::vector<Meaning::Part> parts;
+    for (const char* parameter : parameters)
+      for (const Meaning::Part& part : model.numbers(force + "." + parameter))
+        if (std::abs(model.valueOf(part)) > negligible) parts.push_back(part);
+    if (parts.empty()) return;
+    const std::string id = number + "_" + force;
+    Meaning meaning{Meaning::Kind::scale, parts};
+    if (parameters.size() == 1)
+      meaning.parameter = model.parameters().find(force + "." + parameters.front());
+    const std::size_t x = model.add(factor(id + " factor", 0.02, 50, 0.7), std::move(meaning));
+    model.add(candidate(model, id, fmt::format("{} of {}", words, force),
+                        fmt::format("The {} of the model's {} is wrong.", words, force),
+                        EffectKind::parameter, {x}, {{1.2}, {0.8}}));
+  };
+  for (const SpringGeneralizedForce& spring : model.base().springForces) {
+    if (!spring.enabled || spring.coordinate != at.coordinate.name) continue;
+    offer("viscosity", "viscosity", spring.name, {"viscosity"});
+    offer("stiffness", "stiffness", spring.name, {"stiffness"});
+  }
+  for (const CoordinateLimitForce& limit : model.base().limitForces) {
+    if (!limit.enabled || limit.coordinate != at.coordinate.name) continue;
+    offer("damping", "damping", limit.name, {"damping"});
+    offer("stiffness", "stiffness", limit.name, {"upper_stiffness", "lower_stiffness"});
+  }
+}
+
 void addWrapErrors(EncompassingModel& model) {
   for (const ModelParameter& parameter : model.parameters().parameters()) {
     const auto* wrap = std::get_if<WrapTarget>(&parameter.targets.front());
