@@ -217,7 +217,7 @@ bio::MusculoskeletalSystem movableSystem(const bio::Model& model, const std::str
     }
   }();
   for (const std::string& warning : system.warnings()) summary.warn(warning);
-  if (system.numMuscles() == 0) {
+  if (system.numMuscles() == 0 && !model.muscles.empty()) {
     throw std::invalid_argument(
         fmt::format("{}: no muscle moves {}", file, fmt::join(options.coordinates, ", ")));
   }

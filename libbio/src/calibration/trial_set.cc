@@ -78,7 +78,8 @@ TrialSet::TrialSet(const Model& model, const SystemOptions& system, std::vector<
       options_(system),
       system_(std::make_unique<const MusculoskeletalSystem>(model, system)) {
   if (trials_.empty()) throw std::invalid_argument("no trial is given");
-  if (system_->numMuscles() == 0) throw std::invalid_argument("no muscle moves a free coordinate");
+  if (system_->numMuscles() == 0 && !model.muscles.empty())
+    throw std::invalid_argument("no muscle moves a free coordinate");
   for (const Trial& trial : trials_) {
     catalogues_.push_back(std::make_unique<const ParameterCatalogue>(
         model, *system_, beginningOf(trial, model, *system_, options.initial).point,

@@ -81,6 +81,7 @@ void EncompassingModel::findBodies(MovingCoordinate& at) const {
     const Vector3d centre = centreIn(base_, place, body.name, moved.derivative);
     if (omega.norm() < 1e-9 && centre.norm() < 1e-9) continue;
     at.movedBodies.push_back(body.name);
+    at.massMoment += body.mass * centre.norm();
     if (omega.norm() > 0.5) at.axis = omega.normalized();
   }
 }

@@ -12,6 +12,7 @@
 #include "bio/discovery/with_experimental_conditions.h"
 #include "bio/review/trial_review.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
+#include "discovery/effects/effects.h"
 
 namespace bio::discover {
 
@@ -129,6 +130,9 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
   }
   for (const MovingCoordinate& at : encompassing_.coordinates()) {
     const std::string& name = at.coordinate.name;
+    const bool isDriven = encompassing_.system().numMuscles() > 0;
+    latentFloors_.push_back(options_.latentFloor *
+                            (isDriven ? 1 : 0.1 * unitsOf(encompassing_, at).strength));
     axes_.push_back(at.coordinate.isRotation ? info::discover::Axis{name, "rad", "N·m"}
                                              : info::discover::Axis{name, "m", "N"});
   }
@@ -221,14 +225,14 @@ void MusculoskeletalProblem::addStarts(OfTrial& trial) {
       const std::vector<double> times(channel->times.begin(), channel->times.end());
       shown = std::abs(initialSpeedShown(times, channel->values, 0.3 * length));
     }
+    const double fastest = std::max(turns ? 10.0 : 2.0, 3 * shown);
     const double first = isMeasured ? channel->values[0] : observed.defaultValue;
     start.angle = addOwnQuantity(
         observed.name, {"", turns ? "rad" : "m", first, observed.rangeMin, observed.rangeMax,
                         (isMeasured ? 1 : 10) * options_.startSd * length, false});
-    start.speed =
-        addOwnQuantity(observed.name + ".speed",
-                       {"", turns ? "rad/s" : "m/s", 0, turns ? -10.0 : -2.0, turns ? 10.0 : 2.0,
-                        std::max(options_.speedSd * length, shown), false});
+    start.speed = addOwnQuantity(observed.name + ".speed",
+                                 {"", turns ? "rad/s" : "m/s", 0, -fastest, fastest,
+                                  std::max(options_.speedSd * length, shown), false});
     trial.starts.push_back(start);
   }
 }

@@ -83,7 +83,8 @@ MatrixXd MusculoskeletalProblem::latentScale(const OfTrial& trial,
     const MuscleReport report = reportMuscles(system, atNodes, c);
     scale.block(a * numTimes, 0, numTimes, muscles) =
         report.momentArm.cwiseProduct(report.tendonForce).transpose();
-    scale.block(a * numTimes, muscles + a, numTimes, 1).setConstant(options_.latentFloor);
+    scale.block(a * numTimes, muscles + a, numTimes, 1)
+        .setConstant(latentFloors_[static_cast<std::size_t>(a)]);
   }
   return scale;
 }

@@ -68,9 +68,9 @@ std::vector<Remark> reviewModel(const Model& model) {
 }
 
 std::string whyNotSimulated(const Model& model) {
-  if (model.muscles.empty()) return "it has no muscle";
   const auto isSimulated = [](const Muscle& muscle) { return muscle.canBeSimulated(); };
-  if (std::none_of(model.muscles.begin(), model.muscles.end(), isSimulated)) {
+  if (!model.muscles.empty() &&
+      std::none_of(model.muscles.begin(), model.muscles.end(), isSimulated)) {
     return fmt::format("none of its {} muscles is of a class that can be simulated",
                        model.muscles.size());
   }

@@ -297,7 +297,8 @@ class TrialReader {
       }
     }
     warnWithoutColumn(withoutColumn);
-    if (columnOf_.empty()) fail("drives no muscle of the model, must have a column for one");
+    if (columnOf_.empty() && !trial_.muscles.empty())
+      fail("drives no muscle of the model, must have a column for one");
   }
 
   std::string file_;

@@ -220,6 +220,15 @@ TEST_F(TrialFile, UnderstandsThePathsOfOpenSim4) {
   EXPECT_EQ(trial.measured.at(0).what.object, "elbow_flexion");
 }
 
+TEST_F(TrialFile, NeedsNoExcitationOfAModelWithoutMuscles) {
+  Model model = twoMuscles();
+  model.muscles.clear();
+  const Trial trial = readTrial(folder_.file("t.csv", "time,drawer\n0,0.1\n1,0.2\n"), model, {});
+  EXPECT_EQ(trial.excitations.cols(), 0);
+  EXPECT_EQ(trial.excitations.rows(), 2);
+  ASSERT_THAT(trial.measured, SizeIs(1));
+}
+
 TEST_F(TrialFile, SaysInOneLineWhatIsWrong) {
   EXPECT_EQ(messageOf("time,BRA,TRIlong\n0,0.5,0\n1,1.5,0\n"),
             "trial.csv: column 'BRA' at time = 1 s: excitation = 1.5, must be 0 to 1");

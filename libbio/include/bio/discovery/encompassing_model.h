@@ -58,6 +58,8 @@ struct MovingCoordinate {
   std::vector<std::string> movedBodies;  ///< with mass, in order of distance from ground
   /// Unit axis in ground about which it turns all of them; zero if it does not.
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  /// Σ m·|∂(mass centre)/∂q| over these bodies at mid-range [kg m]; [kg] if it slides.
+  double massMoment = 0;
 
   double middle() const { return (coordinate.rangeMin + coordinate.rangeMax) / 2; }
 };

@@ -15,9 +15,11 @@ namespace bio::discover {
 class SensedMotion;
 
 struct MusculoskeletalProblemOptions {
-  SimulationOptions simulation;      ///< integrator: variational or variationalLeft; step
-  double latentSpacing = 0.05;       ///< between nodes of the latent force [s] > 0
-  double latentFloor = 0.5;          ///< τ_0 of its scale [N·m] > 0
+  SimulationOptions simulation;  ///< integrator: variational or variationalLeft; step
+  double latentSpacing = 0.05;   ///< between nodes of the latent force [s] > 0
+  /// τ_0 of its scale [N·m] > 0; without muscles, whose errors it stands for, times a fortieth of
+  /// the largest weight of what moves, in [N m], or a 160th of that weight in [N].
+  double latentFloor = 0.5;
   double startSd = 0.035;            ///< prior sd of each trial's initial angle [rad] > 0; a shift
                                      ///< has an eighth of it [m]
   double speedSd = 0.1;              ///< prior sd of each trial's initial speed [rad/s] > 0, or an
@@ -220,6 +222,7 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   std::vector<info::discover::Axis> axes_;  ///< the coordinates
   std::vector<OfTrial> trials_;
   double latentLag_ = 0;
+  std::vector<double> latentFloors_;  ///< by coordinate
 };
 
 }  // namespace bio::discover

@@ -55,6 +55,7 @@ void addElasticBand(EncompassingModel& model) {
                atUpper = std::sqrt(squaredLength(q.rangeMax)),
                longest = std::sqrt(A + std::hypot(B, C)), least = longest / kMostDrawn,
                shortest = std::max(least, std::min(atLower, atUpper));
+  const double size = heaviness(model), start = 20 * size;
   const std::string length =
       fmt::format("sqrt({:.17g}+({:.17g})*cos(q)+({:.17g})*sin(q))", A, B, C);
   const std::string slope = fmt::format("(({:.17g})*cos(q)-({:.17g})*sin(q))/(2*{})", C, B, length);
@@ -65,9 +66,11 @@ void addElasticBand(EncompassingModel& model) {
        fmt::format("An elastic band pulls the {} towards the near end of the {}.", hand, parent),
        fmt::format("-k*max({}-rest,0)*{}", length, slope),
        {"k", "rest"},
-       {amplitude("spring.stiffness", "N/m", 0, 1000, 50),
+       {amplitude("spring.stiffness", "N/m", 0, 1000 * size, 50 * size),
         shape("spring.rest", "m", shortest, least, longest, 0.3 * longest)},
-       {{20, std::max(least, 0.5 * shortest)}, {20, shortest}, {20, (shortest + longest) / 2}}});
+       {{start, std::max(least, 0.5 * shortest)},
+        {start, shortest},
+        {start, (shortest + longest) / 2}}});
 }
 
 }  // namespace bio::discover

@@ -43,6 +43,7 @@ void addSaturation(EncompassingModel& model);
 void addElectrodeGains(EncompassingModel& model);
 void addBaselines(EncompassingModel& model);
 void addMassError(EncompassingModel& model);
+void addInertiaErrors(EncompassingModel& model);
 void addActivationError(EncompassingModel& model);
 void addMuscleErrors(EncompassingModel& model);
 void addTendonCompliance(EncompassingModel& model);
@@ -81,6 +82,7 @@ const std::vector<EffectEntry>& effectEntries() {
       {"electrodes", addElectrodeGains},
       {"baselines", addBaselines},
       {"mass", addMassError},
+      {"inertias", addInertiaErrors},
       {"tau", addActivationError},
       {"muscles", addMuscleErrors},
       {"tendon", addTendonCompliance},
@@ -181,7 +183,15 @@ std::string placeOfMass(const EncompassingModel& model) {
 }
 
 CoordinateUnits unitsOf(const EncompassingModel& model, const MovingCoordinate& at) {
-  if (at.coordinate.isRotation) return {"rad", "rad/s", "N m", "torque"};
+  const bool turns = at.coordinate.isRotation;
+  CoordinateUnits units = turns ? CoordinateUnits{"rad", "rad/s", "N m", "torque"}
+                                : CoordinateUnits{"m", "m/s", "N", "force", 0.125};
+  if (model.system().numMuscles() == 0) {
+    constexpr double gravity = 9.81;
+    if (at.massMoment > 0) units.strength = gravity * at.massMoment / (turns ? 4 : 16);
+    return units;
+  }
+  if (turns) return units;
   const auto k = &at - model.coordinates().data();
   double up = 0, down = 0;
   for (const MuscleGroup& group : model.groups()) {
@@ -192,8 +202,15 @@ CoordinateUnits unitsOf(const EncompassingModel& model, const MovingCoordinate& 
     }
   }
   const double strongest = std::max(up, down);
-  const double strength = strongest > 0 ? std::exp2(std::round(std::log2(strongest / 64))) : 1;
-  return {"m", "m/s", "N", "force", 0.125, strength};
+  if (strongest > 0) units.strength = std::exp2(std::round(std::log2(strongest / 64)));
+  return units;
+}
+
+double heaviness(const EncompassingModel& model) {
+  if (model.system().numMuscles() > 0) return 1;
+  double mass = 0;
+  for (const std::string& body : model.movedBodies()) mass += findBody(model.base(), body).mass;
+  return mass > 0 ? mass / 2 : 1;
 }
 
 Candidate candidateAt(const EncompassingModel& model, const MovingCoordinate& at,

@@ -20,13 +20,18 @@ struct CoordinateUnits {
   std::string position, speed, force;  ///< "rad", "rad/s", "N m"; "m", "m/s", "N"
   std::string word;                    ///< "torque" or "force"
   double length = 1;                   ///< 1/8 m stands for 1 rad
-  /// The strongest isometric force of the muscles in one direction, over 64, in [N] of a shift; 1
-  /// for a rotation.
+  /// Of a model with muscles 1 for a rotation, for a shift the strongest isometric force of the
+  /// muscles in one direction, over 64 [N]. Without muscles what moves weighs, over 4 N m or 16 N:
+  /// a free swing is the same for any mass, and so is what can be said of it.
   double strength = 1;
   std::string stiffness() const { return force + "/" + position; }
   std::string viscosity() const { return force + " s/" + position; }
 };
 CoordinateUnits unitsOf(const EncompassingModel& model, const MovingCoordinate& at);
+
+/// Mass of what moves, over that of a forearm and hand (2 kg), by which masses and forces of the
+/// catalogue are multiplied in a model without muscles; 1 with muscles.
+double heaviness(const EncompassingModel& model);
 
 /// A quantity that is 0 while its effect is absent.
 inline info::discover::Quantity amplitude(std::string name, std::string unit, double lower,

@@ -45,6 +45,31 @@ void addBeyond(EncompassingModel& model, std::size_t quantity, double sd, std::s
   model.add(std::move(one));
 }
 
+std::string centreName(const std::string& body) {
+  return body + ".mass_center factor";
+}
+std::string inertiaName(const std::string& body) {
+  return body + ".inertia factor";
+}
+
+/// Where a body's mass lies. A motion without muscles tells it, and little else, more exactly than
+/// people know it.
+void addInertias(EncompassingModel& model, const std::string& body) {
+  const auto add = [&](std::string name, std::initializer_list<const char*> numbers, double most,
+                       double tolerance) {
+    std::vector<Meaning::Part> parts;
+    for (const char* number : numbers)
+      for (const Meaning::Part& part : model.numbers(body + "." + number))
+        if (model.valueOf(part) != 0) parts.push_back(part);
+    if (!parts.empty())
+      model.addNuisance(model.add(factor(std::move(name), 1 / most, most, tolerance),
+                                  {Meaning::Kind::scale, std::move(parts)}));
+  };
+  add(centreName(body), {"mass_center.x", "mass_center.y", "mass_center.z"}, 2, 0.02);
+  add(inertiaName(body),
+      {"inertia.xx", "inertia.yy", "inertia.zz", "inertia.xy", "inertia.xz", "inertia.yz"}, 5, 0.1);
+}
+
 }  // namespace
 
 void addNuisances(EncompassingModel& model) {
@@ -85,6 +110,8 @@ void addNuisances(EncompassingModel& model) {
       }
     }
     model.addNuisance(model.add(factor(timeName, 0.2, 5, 0.2), {Meaning::Kind::scale, parts}));
+  } else {
+    for (const std::string& body : model.movedBodies()) addInertias(model, body);
   }
 }
 
@@ -92,6 +119,23 @@ void addMassError(EncompassingModel& model) {
   if (model.movedBodies().empty()) return;
   addBeyond(model, model.find(massName), 0.3, "mass", "mass of the limb",
             "The moving bodies are heavier or lighter than in the model.", {"payload"});
+}
+
+void addInertiaErrors(EncompassingModel& model) {
+  if (model.system().numMuscles() > 0) return;
+  const auto& quantities = model.quantities();
+  const auto offer = [&](const std::string& quantity, double sd, const std::string& id,
+                         const std::string& words) {
+    const auto at = std::find_if(quantities.begin(), quantities.end(),
+                                 [&](const auto& each) { return each.name == quantity; });
+    if (at == quantities.end()) return;
+    addBeyond(model, static_cast<std::size_t>(at - quantities.begin()), sd, id, words,
+              fmt::format("The {} differs from the model's.", words));
+  };
+  for (const std::string& body : model.movedBodies()) {
+    offer(centreName(body), 0.2, "centre_" + body, "centre of mass of " + body);
+    offer(inertiaName(body), 0.6, "inertia_" + body, "inertia of " + body);
+  }
 }
 
 void addActivationError(EncompassingModel& model) {

@@ -43,11 +43,12 @@ void addExperimentalConditions(EncompassingModel& model) {
 void addPayload(EncompassingModel& model) {
   if (model.movedBodies().empty()) return;
   const std::string& hand = model.movedBodies().back();
-  const std::size_t m = model.add(amplitude("payload.mass", "kg", 0, 5, 0.7),
+  const double size = heaviness(model);
+  const std::size_t m = model.add(amplitude("payload.mass", "kg", 0, 5 * size, 0.7 * size),
                                   {Meaning::Kind::shift, model.numbers(hand + ".mass")});
   model.add(candidate(model, "payload", "mass " + placeOfMass(model),
                       fmt::format("The {} carries a mass that the model does not have.", hand),
-                      info::discover::EffectKind::structure, {m}, {{0.2}}, {"mass"}));
+                      info::discover::EffectKind::structure, {m}, {{0.2 * size}}, {"mass"}));
 }
 
 void addTilt(EncompassingModel& model) {
@@ -87,6 +88,7 @@ void addHandForce(EncompassingModel& model) {
   }
   const double sign = A < 0 ? -1 : 1;
   constexpr std::size_t turn = 1;  // place of t in the constants
+  const double size = heaviness(model);
   const auto force =
       addExpression(model, model.coordinates().front(),
                     {"handforce",
@@ -94,8 +96,8 @@ void addHandForce(EncompassingModel& model) {
                      fmt::format("A constant horizontal force acts on the {}.", hand),
                      fmt::format("F*(({:.17g})*cos(q+t)+({:.17g})*sin(q+t))", sign * A, sign * B),
                      {"F", "t"},
-                     {amplitude("handforce.force", "N", -30, 30, 3)},
-                     {{0.5}},
+                     {amplitude("handforce.force", "N", -30 * size, 30 * size, 3 * size)},
+                     {{0.5 * size}},
                      {"tilt"}});
   if (force)
     model.extend(*model.conditions().armTurn, {model.number(ExpressionTarget{*force, turn}, 0)});

@@ -48,13 +48,14 @@ void addTimedMasses(EncompassingModel& model) {
   // its moment is that of a mass on a coordinate that moves as measured, of one coordinate
   if (model.movedBodies().empty() || !model.hasOneCoordinate()) return;
   const std::string hand = endOfLimb(model);
+  const double size = heaviness(model);
   const std::string subject = hand == "the hand" ? "The hand" : hand;
   const auto add = [&](const char* id, bool ends, const std::string& name,
                        const std::string& sentence) {
     const TimedForce force = withQuantities(model, id, "mass", {Kind::mass, ends, 0, 0, 0},
-                                            amplitude("", "kg", 0, 5, 0.7));
+                                            amplitude("", "kg", 0, 5 * size, 0.7 * size));
     model.add(candidate(model, id, name, sentence, EffectKind::structure,
-                        {force.amplitude, force.time}, {{0.3, 1.0}}));
+                        {force.amplitude, force.time}, {{0.3 * size, 1.0}}));
   };
   add("mass_from", false, "mass picked up by " + hand,
       subject + " picks up a mass during the trial.");

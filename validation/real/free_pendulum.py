@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""A real pendulum that swings freely: what does the authors' model lack?
+
+    python3 validation/real/free_pendulum.py [--build build/program] [--step 0.001] RECORDINGS FOLDER
+
+RECORDINGS: single_id_1.csv … of the MultiArm-Pendulum of the University of Washington (github.com/dynamicslab/MultiArm-Pendulum, MIT licence), columns time and
+phi1_rad with 0 upwards. The model is the authors' without its friction: mass 0.1478 kg, its centre 0.1476 m from the pivot, inertia 1.09e-4 kg m^2 about it. Fitted are
+id_1 and id_3, held out is val_1, of every fifth row. The authors' viscosity is 2.24e-4 N m s/rad. Exit status: that of discover.
+"""
+import argparse
+import math
+import pathlib
+import subprocess
+import sys
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+EVERY = 5
+MODEL = """<?xml version="1.0" encoding="UTF-8"?>
+<OpenSimDocument Version="40000">
+  <Model name="pendulum">
+    <gravity>0 -9.81 0</gravity>
+    <BodySet><objects>
+      <Body name="arm"><mass>0.1478</mass><mass_center>0 -0.1476 0</mass_center><inertia>1.09e-4 1.09e-4 1.09e-4 0 0 0</inertia></Body>
+    </objects></BodySet>
+    <JointSet><objects>
+      <PinJoint name="pivot">
+        <socket_parent_frame>/ground</socket_parent_frame>
+        <socket_child_frame>/bodyset/arm</socket_child_frame>
+        <coordinates><Coordinate name="swing"><default_value>0</default_value><range>-6.3 6.3</range></Coordinate></coordinates>
+      </PinJoint>
+    </objects></JointSet>
+    <ForceSet><objects/></ForceSet>
+  </Model>
+</OpenSimDocument>
+"""
+
+
+def convert(recorded, path):
+    """Degrees from hanging down, every fifth row."""
+    rows = [line.split(",") for line in recorded.read_text().split()[1:]]
+    path.write_text("time,swing_deg\n" + "".join(f"{t},{math.degrees(float(phi) - math.pi):.5f}\n" for t, phi, *_ in rows[::EVERY]))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("recordings", type=pathlib.Path)
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--build", default="build/program")
+    parser.add_argument("--step", default="0.001")
+    asked = parser.parse_args()
+    asked.folder.mkdir(parents=True, exist_ok=True)
+    (asked.folder / "pendulum.osim").write_text(MODEL)
+    for name in ("id_1", "id_3", "val_1"):
+        convert(asked.recordings / f"single_{name}.csv", asked.folder / f"{name}.csv")
+    program = (TOP / asked.build / "apps/fisherhill").resolve()
+    sys.exit(subprocess.run([program, "discover", "pendulum.osim", "id_1.csv", "id_3.csv", "--hold-out", "val_1.csv", "--step", asked.step, "--out", "discover", "--force"],
+                            cwd=asked.folder, check=False).returncode)
+
+
+if __name__ == "__main__":
+    main()
