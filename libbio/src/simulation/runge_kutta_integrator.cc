@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "simulation/switch_crossing.h"
 #include "simulation/system_dynamics.h"
 
@@ -34,12 +36,23 @@ class FibreStability {
   std::vector<double> beyond_;
 };
 
-/// Very long steps leap over the stiff states; then the energy gives them away.
-void cutWhereEnergyIsMadeUp(const MusculoskeletalSystem& system, Trajectory& motion, double step) {
-  const Eigen::VectorXd imbalance = energyImbalance(system, motion);
+/// The work done; without muscles, where a free swing has none, with the kinetic energy.
+double workOf(const MusculoskeletalSystem& system, const Trajectory& motion) {
   const double work = motion.muscleWork.cwiseAbs().maxCoeff() +
                       motion.passiveWork.cwiseAbs().maxCoeff() +
                       motion.externalWork.cwiseAbs().maxCoeff();
+  if (system.numMuscles() > 0) return work;
+  double kinetic = 0;
+  const Eigen::Index every = 1 + motion.q.cols() / 1000;
+  for (Eigen::Index k = 0; k < motion.q.cols(); k += every)
+    kinetic = std::max(kinetic, energyOf(system, motion.q.col(k), motion.qDot.col(k)).kinetic);
+  return work + kinetic;
+}
+
+/// Very long steps leap over the stiff states; then the energy gives them away.
+void cutWhereEnergyIsMadeUp(const MusculoskeletalSystem& system, Trajectory& motion, double step) {
+  const Eigen::VectorXd imbalance = energyImbalance(system, motion);
+  const double work = workOf(system, motion);
   for (Eigen::Index k = 0; k < imbalance.size(); ++k) {
     if (std::abs(imbalance[k]) <= largestEnergyError * work) continue;
     motion.outcome = Outcome::unstable;
