@@ -28,7 +28,7 @@ test -s ${quick}/robots/double-pendulum/verdicts/s41000/verdict.json")
 set_tests_properties(Quick.RobotsSuite PROPERTIES TIMEOUT 300)
 # one short set of two joints, one of a torque: made, looked at, scored
 function(fisherhill_quick_family name family seed)
-  fisherhill_quick(${name} sh -c "rm -rf ${quick}/${family}; ${python} validation/discovery/families/make_sets.py \
+  fisherhill_quick(${name} sh -c "rm -rf ${quick}/${family} && ${python} validation/discovery/families/make_sets.py \
 --build ${PROJECT_BINARY_DIR} --family ${family} --seed ${seed} --sets 1 --seconds 2 --jobs 1 ${quick}/${family}")
   set_tests_properties(Quick.${name} PROPERTIES PASS_REGULAR_EXPRESSION "truth inside the class, of those detected . 1 of 1")
 endfunction()

@@ -269,7 +269,7 @@ class Remedies {
     consider(std::move(clause), changed);
   }
 
-  /// Of each channel, and of each two together.
+  /// Reverses each channel, and each two together.
   void ofSigns() {
     struct Channel {
       std::string name;

@@ -200,7 +200,7 @@ Outcome judge(const std::string& name, const Json& label, const Json& verdict) {
   if (gap != verdict.end() && gap->contains("held_out") && (*gap)["held_out"].is_object()) {
     const Json& heldOut = (*gap)["held_out"];
     o.gapClosed = finite(heldOut, "gap_closed");
-    for (const std::string unit : {"_deg", "_N"}) {
+    for (const std::string unit : {"_deg", "_N", "_Nm", "_sd"}) {
       const auto after = finite(heldOut, ("rmse_after" + unit).c_str());
       const auto floor = finite(heldOut, ("noise_floor" + unit).c_str());
       if (after && floor && *floor > 0) o.overFloor = *after / *floor;

@@ -20,9 +20,9 @@ struct CoordinateUnits {
   std::string position, speed, force;  ///< "rad", "rad/s", "N m"; "m", "m/s", "N"
   std::string word;                    ///< "torque" or "force"
   double length = 1;                   ///< 1/8 m stands for 1 rad
-  /// Of a model with muscles 1 for a rotation, for a shift the strongest isometric force of the
-  /// muscles in one direction, over 64 [N]. Without muscles what moves weighs, over 4 N m or 16 N:
-  /// a free swing is the same for any mass, and so is what can be said of it.
+  /// Size of a force. With muscles 1 for a rotation, for a shift the strongest isometric force of
+  /// the muscles in one direction, over 64 [N]. Without muscles what moves weighs, over 4 N m or
+  /// 16 N: a free swing is the same for any mass, and so is what can be said of it.
   double strength = 1;
   std::string stiffness() const { return force + "/" + position; }
   std::string viscosity() const { return force + " s/" + position; }
