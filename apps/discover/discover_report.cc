@@ -121,12 +121,13 @@ class Writer {
                           : ""));
     }
     if (verdict.vetoed) {
-      const bool isVague = verdict.heldOut && verdict.heldOut->isVague(f_.options.vague);
-      say(!verdict.after.sized
-              ? "The size of the residual does not match the noise, so no probability is given."
-          : isVague ? "The held-out trials are hardly predicted, so no probability is given."
-                    : "The held-out errors are larger than the uncertainty of the parameters "
-                      "explains, so no probability is given.");
+      if (!verdict.after.sized)
+        say("The size of the residual does not match the noise, so no probability is given.");
+      else if (verdict.heldOut && verdict.heldOut->isVague(f_.options.vague))
+        say("The held-out trials are hardly predicted, so no probability is given.");
+      else
+        say("The held-out errors are larger than the uncertainty of the parameters explains, so no "
+            "probability is given.");
     }
   }
 

@@ -10,11 +10,13 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <thread>
 
 #include "output/json_text.h"
 
@@ -107,9 +109,7 @@ void RowFile::open(const Json& given, bool replace) {
   const Json settings = Json::parse(jsonText(given));  // as it is going to be read
   file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file_ < 0) throw failure(path_, fmt::format("cannot be written ({})", std::strerror(errno)));
-  if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
-    throw failure(path_, "is in use by another program");
-  }
+  lock();
   const std::string head = "# " + jsonText(settings) + "\n" + columns_;
   std::ifstream stream(path_, std::ios::binary);
   std::string beginning(head.size(), '\0');
@@ -137,6 +137,17 @@ void RowFile::open(const Json& given, bool replace) {
   throw failure(path_, fmt::format("is the unfinished result of other settings ({}); --force "
                                    "replaces it",
                                    firstDifference(there, settings)));
+}
+
+void RowFile::lock() const {
+  using namespace std::chrono_literals;
+  // The lock of a killed program ends with it, which takes longer than to send the signal.
+  for (int attempt = 0; attempt < 200; ++attempt) {
+    if (flock(file_, LOCK_EX | LOCK_NB) == 0) return;
+    if (errno != EWOULDBLOCK) throw failure(path_, std::strerror(errno));
+    std::this_thread::sleep_for(5ms);
+  }
+  throw failure(path_, "is in use by another program");
 }
 
 void RowFile::begin(const std::string& head) {

@@ -14,8 +14,8 @@ namespace app {
 /// The file holds the settings as JSON after "# ", a line of column names, and complete rows
 /// "number,…,checksum" in order of arrival. Every row is written at once; a truncated row at the
 /// end is dropped when the file is opened again, and a row whose checksum does not match counts as
-/// not computed. A lock excludes a second program. Rows are kept in the file; without a path they
-/// are kept in memory.
+/// not computed. A lock, waited for at most a second, excludes a second program. Rows are kept in
+/// the file; without a path they are kept in memory.
 class RowFile {
  public:
   /// Opens and reads the file, or creates it.
@@ -52,6 +52,7 @@ class RowFile {
 
  private:
   void open(const nlohmann::ordered_json& settings, bool replace);
+  void lock() const;
   void begin(const std::string& head);
   void read(std::uint64_t from);
   void keep(std::uint64_t number, std::uint64_t place);

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """A real pendulum that swings freely: what does the authors' model lack?
 
-    python3 validation/real/free_pendulum.py [--build build/program] [--step 0.001] RECORDINGS FOLDER
+    python3 validation/real/free_pendulum.py [--build build/program] [--step 0.001] [--heavier 1] RECORDINGS FOLDER
 
 RECORDINGS: single_id_1.csv … of the MultiArm-Pendulum of the University of Washington (github.com/dynamicslab/MultiArm-Pendulum, MIT licence), columns time and
 phi1_rad with 0 upwards. The model is the authors' without its friction: mass 0.1478 kg, its centre 0.1476 m from the pivot, inertia 1.09e-4 kg m^2 about it. Fitted are
-id_1 and id_3, held out is val_1, of every fifth row. The authors' viscosity is 2.24e-4 N m s/rad. Exit status: that of discover.
+id_1 and id_3, held out is val_1, of every fifth row. The authors' viscosity is 2.24e-4 N m s/rad. --heavier: the model's mass and inertia times this, which its free swing cannot
+show. Exit status: that of discover.
 """
 import argparse
 import math
@@ -20,7 +21,7 @@ MODEL = """<?xml version="1.0" encoding="UTF-8"?>
   <Model name="pendulum">
     <gravity>0 -9.81 0</gravity>
     <BodySet><objects>
-      <Body name="arm"><mass>0.1478</mass><mass_center>0 -0.1476 0</mass_center><inertia>1.09e-4 1.09e-4 1.09e-4 0 0 0</inertia></Body>
+      <Body name="arm"><mass>{mass!r}</mass><mass_center>0 -0.1476 0</mass_center><inertia>{inertia!r} {inertia!r} {inertia!r} 0 0 0</inertia></Body>
     </objects></BodySet>
     <JointSet><objects>
       <PinJoint name="pivot">
@@ -47,9 +48,10 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--build", default="build/program")
     parser.add_argument("--step", default="0.001")
+    parser.add_argument("--heavier", type=float, default=1)
     asked = parser.parse_args()
     asked.folder.mkdir(parents=True, exist_ok=True)
-    (asked.folder / "pendulum.osim").write_text(MODEL)
+    (asked.folder / "pendulum.osim").write_text(MODEL.format(mass=0.1478 * asked.heavier, inertia=1.09e-4 * asked.heavier))
     for name in ("id_1", "id_3", "val_1"):
         convert(asked.recordings / f"single_{name}.csv", asked.folder / f"{name}.csv")
     program = (TOP / asked.build / "apps/fisherhill").resolve()

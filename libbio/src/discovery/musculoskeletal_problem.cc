@@ -22,6 +22,10 @@ using Eigen::VectorXd;
 
 namespace {
 
+/// Floor of the latent force in units of CoordinateUnits::strength, without muscles: there are
+/// no inputs whose errors it stands for, and little friction damps a free swing (decision 080).
+constexpr double passiveFloor = 0.1;
+
 /// Muscles whose record has a flat top in a trial that hides 1 % of its height or more.
 std::vector<std::string> withFlatTops(const std::vector<Trial>& trials) {
   std::vector<std::string> muscles;
@@ -132,7 +136,7 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
     const std::string& name = at.coordinate.name;
     const bool isDriven = encompassing_.system().numMuscles() > 0;
     latentFloors_.push_back(options_.latentFloor *
-                            (isDriven ? 1 : 0.1 * unitsOf(encompassing_, at).strength));
+                            (isDriven ? 1 : passiveFloor * unitsOf(encompassing_, at).strength));
     axes_.push_back(at.coordinate.isRotation ? info::discover::Axis{name, "rad", "N·m"}
                                              : info::discover::Axis{name, "m", "N"});
   }

@@ -1,16 +1,17 @@
 #include "bio/discovery/musculoskeletal_problem.h"
 #include "bio/observation/nudge.h"
+#include "info/discovery/likelihood/forwarding_problem.h"
 
 namespace bio::discover {
 
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// A MusculoskeletalProblem whose coordinates are held near what was measured. Must not
 /// outlive it.
-class MusculoskeletalProblem::Nudged final : public info::discover::DiscoveryProblem {
+class MusculoskeletalProblem::Nudged final : public info::discover::ForwardingProblem {
  public:
-  Nudged(const MusculoskeletalProblem& problem, double frequency) : problem_(problem) {
+  Nudged(const MusculoskeletalProblem& problem, double frequency)
+      : ForwardingProblem(problem), problem_(problem) {
     for (const OfTrial& trial : problem.trials_) {
       std::vector<Nudge>& nudges = nudges_.emplace_back();
       for (const Series& series : trial.series) {
@@ -22,21 +23,6 @@ class MusculoskeletalProblem::Nudged final : public info::discover::DiscoveryPro
       }
     }
   }
-  const std::vector<Quantity>& quantities() const override { return problem_.quantities(); }
-  const std::vector<std::size_t>& nuisances() const override { return problem_.nuisances(); }
-  const std::vector<Candidate>& candidates() const override { return problem_.candidates(); }
-  int numTrials() const override { return problem_.numTrials(); }
-  std::string trialName(int trial) const override { return problem_.trialName(trial); }
-  const std::vector<double>& times(int trial) const override { return problem_.times(trial); }
-  const std::vector<int>& outputOfSample(int trial) const override {
-    return problem_.outputOfSample(trial);
-  }
-  const VectorXd& measured(int trial) const override { return problem_.measured(trial); }
-  const std::vector<info::discover::Axis>& axes() const override { return problem_.axes(); }
-  const std::vector<info::discover::Node>& nodes(int trial) const override {
-    return problem_.nodes(trial);
-  }
-  double latentLag() const override { return problem_.latentLag(); }
   Prediction predict(int trial, const VectorXd& values, const VectorXd& latent,
                      const std::vector<std::size_t>& wanted, bool latentToo) const override {
     return problem_.predictWith(&of(trial), trial, values, latent, wanted, latentToo);
@@ -49,8 +35,14 @@ class MusculoskeletalProblem::Nudged final : public info::discover::DiscoveryPro
   VectorXd outputs(int trial, const VectorXd& values, const VectorXd& latent) const override {
     return problem_.outputsOf(problem_.of(trial), values, latent, 1, &of(trial));
   }
-  MatrixXd inputs(int trial) const override { return problem_.inputs(trial); }
-  std::vector<std::string> inputNames() const override { return problem_.inputNames(); }
+  // not available while the coordinates are held
+  VectorXd refinedOutputs(int, const VectorXd&) const override { return {}; }
+  std::unique_ptr<DiscoveryProblem> nudged(double) const override { return nullptr; }
+  std::unique_ptr<DiscoveryProblem> withFormula(std::size_t,
+                                                const std::vector<info::discover::FormulaTerm>&,
+                                                const std::vector<std::size_t>&) const override {
+    return nullptr;
+  }
 
  private:
   const std::vector<Nudge>& of(int trial) const {

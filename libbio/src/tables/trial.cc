@@ -297,7 +297,7 @@ class TrialReader {
       }
     }
     warnWithoutColumn(withoutColumn);
-    if (columnOf_.empty() && !trial_.muscles.empty())
+    if (columnOf_.empty() && !model_.muscles.empty())
       fail("drives no muscle of the model, must have a column for one");
   }
 

@@ -6,8 +6,9 @@
 
 namespace info::discover {
 
-/// All hypotheses that were raced and could be simulated, the most probable first; one in which an
-/// effect more is present is half as probable beforehand, divided among all candidates.
+/// All hypotheses that were raced and could be simulated, the most probable first, with
+///     P(h) ∝ Z_h·(1/2M)^k
+/// for k effects of M candidates.
 std::vector<Finalist> finalistsOf(const Search& search);
 
 }  // namespace info::discover

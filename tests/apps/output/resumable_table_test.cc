@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
+#include <optional>
+#include <thread>
 
 #include "support/scratch_folder.h"
 #include "support/throws_saying.h"
@@ -139,6 +142,18 @@ TEST_F(RowFiles, ALongRowIsReadWhole) {
 TEST_F(RowFiles, ASecondWriterIsKeptAway) {
   const RowFile first = open();
   support::throwsSaying([&] { open(); }, "is in use by another program");
+}
+
+// A killed program has its lock until the system has taken it away.
+TEST_F(RowFiles, TheLockOfADyingWriterIsWaitedFor) {
+  std::optional<RowFile> first(std::in_place, path, settings, columns, false);
+  first->append(0, "1,2");
+  std::thread death([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    first.reset();
+  });
+  EXPECT_EQ(open().row(0), "1,2");
+  death.join();
 }
 
 TEST_F(RowFiles, WithoutAPathRowsAreKeptInMemoryAlone) {

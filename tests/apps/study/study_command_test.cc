@@ -102,9 +102,9 @@ TEST_F(StudyCommand, KilledTwiceEndsInTheSameBytes) {
   fs::remove_all(scratch_ / "out");
   int kills = 0;
   std::string before;
+  ProgramResult last;
   for (double limit = 0.03; limit < 100; limit *= 1.3) {
-    const ProgramResult last =
-        run({"timeout", "-s", "KILL", std::to_string(limit)}, {"--threads", "1"});
+    last = run({"timeout", "-s", "KILL", std::to_string(limit)}, {"--threads", "1"});
     if (last.status != 137) break;
     ++kills;
     if (fs::exists(scratch_ / "out/study.csv")) continue;  // killed behind the last subject
@@ -113,7 +113,7 @@ TEST_F(StudyCommand, KilledTwiceEndsInTheSameBytes) {
     before = growing;
   }
   EXPECT_GE(kills, 2);
-  EXPECT_TRUE(bytes() == whole);
+  EXPECT_TRUE(bytes() == whole) << "the last one: " << last.status << ", " << last.err;
 }
 
 TEST_F(StudyCommand, RefusesWhatCannotBeCarriedOut) {

@@ -8,9 +8,10 @@ Families: shoulder and torque (the shipped elbow with its shoulder free; on a dy
 is always the same; what is already there is not made or searched again. Of each twelve sets in turn three hide nothing, six one effect, one two effects, one something outside
 the catalogue, and one an effect that discover is told to leave out. Subjects and what is hidden: subject.py. Excitations are random pulses played in open loop, the limb starts
 at rest but not in balance; on a dynamometer there are an isometric, an isokinetic and a passive trial, and an isokinetic one held out. 0.5° of noise in angles, 0.3 N m in
-moments. A trial is drawn again, up to 12 times, until the nominal model is within 40° RMS (20 N m) of it; then the nearest is taken.
+moments. A trial is drawn again, up to 12 times, until the nominal model is within 40° RMS (20 N m) of it; then the nearest is taken. One that cannot be simulated or leaves
+its limits is drawn again up to 100 times; then the set is left out, and a line says so.
 
-FOLDER/FAMILY holds data, sealed (labels), verdicts and score.json. Seeds below 10000 are for development. Exit status as that of score_discovery: 1 if a target is missed.
+FOLDER/FAMILY holds data, sealed (labels), verdicts and score.json; FOLDER/together the same sets of all families, whose line ends the table that is printed. Seeds below 10000 are for development. Exit status as that of score_discovery: 1 if a target is missed.
 """
 import argparse
 import concurrent.futures
@@ -24,8 +25,10 @@ import sys
 import subject
 
 TOP = pathlib.Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(TOP / "validation/discovery"))
+from opensim_sets import table
 ROW = 0.01  # [s]
-TORQUE_KINDS = ["visc", "payload", "strength", "lever_weight", "lever_inertia", "gain", "moment_bias", "lag", "delay"]
+DRAWS, MOST_DRAWS = 12, 100  # of a trial; the second while none can be simulated within the limits
 ELBOW = {"TRIlong": "e", "TRIlat": "e", "TRImed": "e", "ANC": "e", "BIClong": "f", "BICshort": "f", "BRA": "f", "BRD": "f"}
 HEADS = {"TRI": ["TRIlong", "TRIlat", "TRImed"], "BIC": ["BIClong", "BICshort"], "BRA": ["BRA"]}
 
@@ -36,7 +39,7 @@ class Family:
     def __init__(self, model, coordinates, limits, muscles, levels, tip, swaps, seconds, size, heavy=1.0, strong=None, kinds=(), options=(), torque=False):
         self.model, self.coordinates, self.limits, self.muscles, self.levels = model, coordinates, limits, muscles, levels
         self.tip, self.swaps, self.seconds, self.size, self.heavy, self.strong = tip, swaps, seconds, size, heavy, strong or HEADS
-        self.torque, self.options = torque, list(options)
+        self.torque, self.options, self.farthest = torque, list(options), 20 if torque else 40
         joint = ["visc", "coulomb", "stiffness", "bias"]
         self.kinds = list(kinds) or ["payload", "delay", "tilt", "swap", "strength"] + [f"{q}.{kind}" for q in coordinates for kind in joint]
 
@@ -63,14 +66,8 @@ FAMILIES = {
                   [("hamstrings_r", "vasti_r"), ("tib_ant_r", "rect_fem_r")], 1.5, {"knee_angle_r": 2.5, "ankle_angle_r": 1.5}, heavy=2.0,
                   strong={m: [m] for m in ("hamstrings_r", "vasti_r", "tib_ant_r")}, options=["--lock", "hip_flexion_r=1.1"]),
     "torque": Family("elbow8.osim", {"elbow_flexion": (40, 100)}, {}, ELBOW, {"e": (0.25, 0.45), "f": (0.25, 0.45)}, "hand", [], 4.0, {"elbow_flexion": 1},
-                     kinds=TORQUE_KINDS, torque=True),
+                     kinds=["visc", "payload", "strength", *subject.OF_MOMENT, "delay"], torque=True),
 }
-
-
-def table(path):
-    lines = path.read_text().splitlines()
-    begin = lines.index("endheader") + 1
-    return lines[begin].split("\t"), list(zip(*([float(x) for x in line.split("\t")] for line in lines[begin + 1:] if line.strip())))
 
 
 def interpolated(times, from_times, values):
@@ -147,7 +144,7 @@ def distance(one, other):
 class Trial:
     """One draw of a trial; shown: measured columns without noise, None where it cannot be used; far: how far the nominal model is from it."""
 
-    def __init__(self, program, folder, family, nominal, hidden, draw, place, count):
+    def __init__(self, program, folder, family, nominal, hidden, draw, place):
         self.time = [ROW * k for k in range(round(family.seconds / ROW) + 1)]
         self.shown, self.far, self.angle = None, math.inf, None
         if family.torque:
@@ -164,7 +161,8 @@ class Trial:
             write(folder / "driven.csv", ["time", *family.muscles, *(n for n, _ in angle)], [self.time, *inputs, *(a for _, a in angle)])
             if not simulate(program, model, folder / "driven.csv", folder / "replay", family, start):
                 return
-            columns, values = table(folder / "replay" / ("forces.sto" if family.torque else "states.sto"))
+            columns, rows = table(folder / "replay" / ("forces.sto" if family.torque else "states.sto"))
+            values = list(zip(*rows))
             places = [next(k for k, c in enumerate(columns) if c.endswith(f"{q}.reaction" if family.torque else f"/{q}/value")) for q in family.coordinates]
             turned = (lambda x: -x) if family.torque else math.degrees
             motions.append([[turned(x) for x in interpolated(self.time, values[0], values[k])] for k in places])
@@ -192,7 +190,7 @@ class Trial:
 
 
 def one_hidden(family, kind, draw):
-    if family.torque and kind in ("lever_weight", "lever_inertia", "gain", "moment_bias", "lag"):
+    if kind in subject.OF_MOMENT:
         return subject.of_moment(next(iter(family.coordinates)), kind, draw)
     if kind == "visc":
         kind = f"{next(iter(family.coordinates))}.visc"
@@ -218,6 +216,10 @@ def plan(family, seed, draw):
     return "out", [hidden], [hidden.label["id"], *hidden.label["equivalents"], *hidden.like]
 
 
+class NotMade(Exception):
+    pass
+
+
 def make(program, models, folder, name, seed):
     """Data and label of a set; nothing where they are."""
     family, data, label = FAMILIES[name], folder / f"data/s{seed}", folder / f"sealed/s{seed}.json"
@@ -236,14 +238,14 @@ def make(program, models, folder, name, seed):
     count, far = 4 if family.torque else 3, []
     for place in range(count):
         best = None
-        for _ in range(12):
-            trial = Trial(program, data, family, nominal, hidden, draw, place, count)
+        for attempt in range(MOST_DRAWS):
+            trial = Trial(program, data, family, nominal, hidden, draw, place)
             if trial.shown and (best is None or trial.far < best.far):
                 best = trial
-            if best and best.far < (20 if family.torque else 40):
+            if best and (attempt >= DRAWS - 1 or best.far < family.farthest):
                 break
         if best is None:
-            sys.exit(f"{name} {seed}: no trial of this subject can be simulated")
+            raise NotMade(f"{name} {seed}: not made, no trial of this subject stays within its limits")
         far.append(best.far)
         best.write(data / (f"train_{place}.csv" if place < count - 1 else "held_out.csv"), family, hidden, draw)
     for made in ("hidden.osim", "driven.csv"):
@@ -256,15 +258,55 @@ def make(program, models, folder, name, seed):
 
 
 def look(program, models, folder, name, seed):
-    nominal, out = make(program, models, folder, name, seed), folder / f"verdicts/s{seed}"
+    try:
+        nominal, out = make(program, models, folder, name, seed), folder / f"verdicts/s{seed}"
+    except NotMade as why:
+        print(why, flush=True)
+        return
     if (out / "verdict.json").exists() and json.loads((out / "verdict.json").read_text())["verdict"] != "stopped":
         return
     data, without = folder / f"data/s{seed}", json.loads((folder / f"sealed/s{seed}.json").read_text())["left_out"]
     out.parent.mkdir(parents=True, exist_ok=True)
     with open(f"{out}.txt", "w", encoding="utf-8") as said:
         subprocess.run([program, "discover", nominal, *sorted(data.glob("train_*.csv")), "--hold-out", data / "held_out.csv", *FAMILIES[name].chosen(), "--threads", "1",
-                        *(["--without", *without] if without else []), "--force", "--out", out], stdout=said, stderr=subprocess.STDOUT, check=False)
+                        *(["--without", ",".join(without)] if without else []), "--force", "--out", out], stdout=said, stderr=subprocess.STDOUT, check=False)
     print(f"{name} {seed}", flush=True)
+
+
+def scored(score, folder):
+    return subprocess.run([score, "--labels", folder / "sealed", "--verdicts", folder / "verdicts", "--json", folder / "score.json"], check=False).returncode
+
+
+def together(folder, names):
+    """Links to the sets of all families."""
+    for kind in ("sealed", "verdicts"):
+        (folder / "together" / kind).mkdir(parents=True, exist_ok=True)
+        for old in (folder / "together" / kind).iterdir():
+            old.unlink()
+        for name in names:
+            for one in (folder / name / kind).iterdir():
+                (folder / "together" / kind / f"{name}_{one.name}").symlink_to(one.resolve())
+
+
+COLUMNS = {"named where nothing is hidden": "false alarms on null data", "right first, detectable single": "the same, clean, full size, not called too small to see",
+           "right first, all single": "right name first, clean EMG, full size", "truth in class, of detected": "truth inside the class, of those detected",
+           "two: both named": "two effects: both named", "out of catalogue: no unqualified name": "out of catalogue: no unqualified name",
+           "confidently wrong": "confidently wrong", "95 % interval covers": "95 % interval covers the truth"}
+
+
+def summary(folder, names):
+    """A line of each family's score."""
+    yield "| family | " + " | ".join(COLUMNS) + " | processor, median, largest |"
+    yield "|---" * (len(COLUMNS) + 2) + "|"
+    for name in names:
+        score = json.loads((folder / name / "score.json").read_text())
+        shares, spreads = ({one["metric"]: one for one in score[kind]} for kind in ("shares", "spreads"))
+        time = spreads["time per data set"]
+        cells = []
+        for metric in COLUMNS.values():
+            one = shares[metric]
+            cells.append(f"{one['k']} of {one['n']}" + (f" ({100 * one['wilson_low']:.0f}–{100 * one['wilson_high']:.0f} %)" if one["n"] >= 20 else ""))
+        yield f"| {name} | " + " | ".join(cells) + (f" | {time['median']:.0f}, {time['greatest']:.0f} s |" if time["n"] else " | – |")
 
 
 def main():
@@ -288,12 +330,14 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(asked.jobs) as pool:
         for done in [pool.submit(look, program, models, asked.folder / name, name, seed) for seed in range(asked.seed, asked.seed + asked.sets) for name in names]:
             done.result()
-    status = 0
+    score = TOP / asked.build / "validation/discovery/score_discovery"
     for name in names:
         print(f"\n{name}\n", flush=True)
-        folder = asked.folder / name
-        status = max(status, subprocess.run([TOP / asked.build / "validation/discovery/score_discovery", "--labels", folder / "sealed", "--verdicts", folder / "verdicts",
-                                             "--json", folder / "score.json"], check=False).returncode)
+        scored(score, asked.folder / name)
+    together(asked.folder, names)
+    print("\ntogether\n", flush=True)
+    status = scored(score, asked.folder / "together")
+    print("\n" + "\n".join(summary(asked.folder, [*names, "together"])))
     sys.exit(status)
 
 

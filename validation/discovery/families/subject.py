@@ -131,6 +131,9 @@ def of_model(world, kind, draw):
     raise ValueError(kind)
 
 
+OF_MOMENT = ("lever_weight", "lever_inertia", "gain", "moment_bias", "lag")
+
+
 def of_moment(coordinate, kind, draw):
     """What a dynamometer adds to the moment [N m] that it records: (moment, angle [deg], acceleration [rad/s^2])."""
     if kind == "lever_weight":

@@ -187,8 +187,8 @@ CoordinateUnits unitsOf(const EncompassingModel& model, const MovingCoordinate& 
   CoordinateUnits units = turns ? CoordinateUnits{"rad", "rad/s", "N m", "torque"}
                                 : CoordinateUnits{"m", "m/s", "N", "force", 0.125};
   if (model.system().numMuscles() == 0) {
-    constexpr double gravity = 9.81;
-    if (at.massMoment > 0) units.strength = gravity * at.massMoment / (turns ? 4 : 16);
+    constexpr double gravity = 9.81, forearm = 4, cart = 16;  // [N m] and [N] that count as 1
+    if (at.massMoment > 0) units.strength = gravity * at.massMoment / (turns ? forearm : cart);
     return units;
   }
   if (turns) return units;

@@ -52,8 +52,9 @@ std::string inertiaName(const std::string& body) {
   return body + ".inertia factor";
 }
 
-/// Where a body's mass lies. A motion without muscles tells it, and little else, more exactly than
-/// people know it.
+/// Where a body's mass lies: a free swing tells its frequency more exactly than people know that.
+/// Tolerances, 2 % of the place and 10 % of the inertia, are judgements
+/// (docs/decisions/080-models-without-muscles.md).
 void addInertias(EncompassingModel& model, const std::string& body) {
   const auto add = [&](std::string name, std::initializer_list<const char*> numbers, double most,
                        double tolerance) {
@@ -196,8 +197,8 @@ void addTendonCompliance(EncompassingModel& model) {
                       EffectKind::structure, {x}, {{1.2}, {0.8}}));
 }
 
-// What the model already has is offered as its number. The deviation is a judgement: passive
-// torques of healthy joints differ by a factor of two between people (Engin & Chen 1987).
+// What the model already has is offered as its number. The deviation, a factor of two, is a
+// judgement.
 void addForceErrors(EncompassingModel& model, const MovingCoordinate& at) {
   constexpr double negligible = 1e-6;  // SI; a limit that only damps has a stiffness, too
   const auto offer = [&](const std::string& number, const std::string& words,

@@ -76,8 +76,8 @@ struct Options {
   /// Called between fits; returning false ends the search, and the verdict holds the results so
   /// far.
   std::function<bool(const Progress&)> progress;
-  /// Asked before every simulation, a millisecond or so each: false ends the search as progress
-  /// does. May be empty.
+  /// Asked before every simulation, so it must be cheap: false ends the search as progress does.
+  /// May be empty. Not asked in fits of formulas, which come last.
   std::function<bool()> goOn;
 };
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "discovery/likelihood/forwarding_problem.h"
+#include "info/discovery/likelihood/forwarding_problem.h"
 
 namespace info::discover {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "discovery/likelihood/forwarding_problem.h"
+#include "info/discovery/likelihood/forwarding_problem.h"
 
 namespace info::discover {
 
