@@ -49,6 +49,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/discovery/repaired.h
   include/bio/discovery/sensor_law.h
   include/bio/discovery/timed_force.h
+  include/bio/discovery/user_effect.h
   include/bio/discovery/with_experimental_conditions.h
   include/bio/discovery/workflow.h
   include/bio/emg/alignment.h

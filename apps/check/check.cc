@@ -7,6 +7,7 @@
 #include <map>
 
 #include "bio/analysis/opensim_paths.h"
+#include "bio/discovery/user_effect.h"
 #include "bio/model/convert_muscles.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/path/length_jumps.h"
@@ -82,8 +83,8 @@ std::vector<ReviewFinding> shortened(std::vector<ReviewFinding> findings) {
   return shown;
 }
 
-bool isModel(const std::string& file) {
-  return std::filesystem::path(file).extension() == ".osim";
+bool hasExtension(const std::string& file, const char* extension) {
+  return std::filesystem::path(file).extension() == extension;
 }
 
 /// Contents of a file, for the report.
@@ -165,6 +166,35 @@ Contents checkRecording(const std::string& file, Findings& findings, Summary& su
   return std::move(contents.parts);
 }
 
+bool hasCoordinate(const bio::Model& model, const std::string& name) {
+  return std::any_of(model.joints.begin(), model.joints.end(), [&](const bio::Joint& joint) {
+    return std::any_of(joint.coordinates.begin(), joint.coordinates.end(),
+                       [&](const bio::Coordinate& each) { return each.name == name; });
+  });
+}
+
+/// Effects of the user's own, as discover --effect reads them.
+Contents checkEffects(const std::string& file, const std::vector<bio::Model>& models,
+                      Findings& findings) {
+  Table table{"Effects", {"id", "coordinate", "force", "parameters"}, {}};
+  for (const bio::discover::UserEffect& effect : bio::discover::readUserEffects(file)) {
+    for (const bio::Model& model : models)
+      if (!effect.coordinate.empty() && !hasCoordinate(model, effect.coordinate))
+        findings.add(file, "error",
+                     fmt::format("effect '{}': the model “{}” has no coordinate '{}'", effect.id,
+                                 model.name, effect.coordinate));
+    std::vector<std::string> parameters;
+    for (std::size_t i = 0; i < effect.symbols.size(); ++i) {
+      const info::discover::Quantity& each = effect.quantities[i];
+      parameters.push_back(
+          fmt::format("{} = {} ± {} {}", effect.symbols[i], each.nominal, each.sd, each.unit));
+    }
+    table.rows.push_back({effect.id, effect.coordinate.empty() ? "each" : effect.coordinate,
+                          effect.expression, fmt::format("{}", fmt::join(parameters, ", "))});
+  }
+  return {Section{file}, std::move(table)};
+}
+
 class Check : public Command {
  public:
   About about() const override {
@@ -176,8 +206,8 @@ class Check : public Command {
     options
         .add_option(
             "FILE", files_,
-            "models (.osim), trials (.sto, .mot, .csv), which are checked against the models, and "
-            "recordings (.c3d, .trc, .xdf)")
+            "models (.osim), trials (.sto, .mot, .csv), which are checked against the models, "
+            "recordings (.c3d, .trc, .xdf), and effects of discover --effect (.toml)")
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("");
@@ -197,7 +227,7 @@ class Check : public Command {
     nlohmann::ordered_json recordings = nlohmann::ordered_json::array();
     const auto checkAll = [&](bool areModels) {
       for (const std::string& file : files_) {
-        if (isModel(file) != areModels) continue;
+        if (hasExtension(file, ".osim") != areModels) continue;
         try {
           if (areModels) {
             bio::Model model = bio::readOsim(file);
@@ -206,7 +236,8 @@ class Check : public Command {
             modelFiles.push_back(file);
           }
           const Contents contents =
-              areModels ? checkModel(file, models.back(), findings)
+              areModels                     ? checkModel(file, models.back(), findings)
+              : hasExtension(file, ".toml") ? checkEffects(file, models, findings)
               : bio::isRecordedFile(file)
                   ? checkRecording(file, findings, summary, recordings, context)
                   : checkTrial(file, models, findings);

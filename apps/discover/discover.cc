@@ -58,6 +58,14 @@ class Discover : public Command {
         ->allow_extra_args(false)
         ->delimiter(',')
         ->type_name("IDS");
+    options
+        .add_option(
+            "--effect", effects_,
+            "TOML file of effects of your own, forces by a formula, to be looked for beside "
+            "the catalogue; may be repeated")
+        ->check(CLI::ExistingFile)
+        ->allow_extra_args(false)
+        ->type_name("FILE.toml");
     options.add_flag("--list-effects", listEffects_,
                      "list every effect of the catalogue for MODEL and exit: id, name, kind, "
                      "parameters with units");
@@ -81,7 +89,7 @@ class Discover : public Command {
     if (listEffects_) {
       if (!robot_.system.empty())
         throw std::invalid_argument("--list-effects cannot be combined with --system");
-      return listEffects(context, model_, simulation_);
+      return listEffects(context, model_, effects_, simulation_);
     }
     if (!robot_.system.empty()) {
       robot_.trials = trials_;
@@ -99,15 +107,16 @@ class Discover : public Command {
     }
     if (trials_.empty()) throw std::invalid_argument("TRIAL is required (see --help)");
     if (!robot_.with.empty()) throw std::invalid_argument("--with requires --system");
-    ModelDiscoveryRequest request{model_,     trials_,      heldOut_,    without_,
-                                  noise_,     outputNoise_, maxEffects_, inputScatter_,
-                                  timeLimit_, simulation_};
+    ModelDiscoveryRequest request{model_,        trials_,    heldOut_,     without_,
+                                  effects_,      noise_,     outputNoise_, maxEffects_,
+                                  inputScatter_, timeLimit_, simulation_};
     return discoverInModel(request, context).status;
   }
 
  private:
   /// Options of the elbow that say nothing of a robot.
   void mustSuitRobots() const {
+    if (!effects_.empty()) throw std::invalid_argument("--effect cannot be combined with --system");
     if (noise_) throw std::invalid_argument("--noise-deg: with --system use --noise");
     for (const CLI::Option* option : systemOptions_) {
       if (option->count() > 0) {
@@ -133,7 +142,7 @@ class Discover : public Command {
 
   RobotDiscovery inRobot_;
   std::string model_;
-  std::vector<std::string> trials_, heldOut_, without_, outputNoise_;
+  std::vector<std::string> trials_, heldOut_, without_, effects_, outputNoise_;
   std::optional<double> noise_;
   int maxEffects_ = 3;
   bool listEffects_ = false;

@@ -121,7 +121,12 @@ class Writer {
                           : ""));
     }
     if (verdict.vetoed) {
-      if (!verdict.after.sized)
+      if (verdict.reserved)
+        say("The residual of the fitted trials is not noise alone, so no probability is given: the "
+            "effects are named because they carry over to the held-out trials.");
+      else if (verdict.finding == info::discover::Finding::numerical)
+        say("The time steps are too long for a conclusion, so no probability is given.");
+      else if (!verdict.after.sized)
         say("The size of the residual does not match the noise, so no probability is given.");
       else if (verdict.heldOut && verdict.heldOut->isVague(f_.options.vague))
         say("The held-out trials are hardly predicted, so no probability is given.");

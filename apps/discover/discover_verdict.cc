@@ -132,8 +132,7 @@ ordered_json trialsJson(const DiscoverFindings& f) {
       json["start"] = startJson(f, trial.starts.front());
     } else {
       json["starts"] = ordered_json::array();
-      for (const bio::TrialStart& start : trial.starts)
-        json["starts"].push_back(startJson(f, start));
+      for (const auto& start : trial.starts) json["starts"].push_back(startJson(f, start));
     }
     list.push_back(std::move(json));
   }
@@ -337,7 +336,6 @@ std::string verdictWord(const info::discover::Verdict& verdict) {
 }
 
 ordered_json verdictJson(const DiscoverFindings& f) {
-  const auto& candidates = f.data.candidates();
   const auto& verdict = f.verdict;
   ordered_json json;
   json["verdict"] = verdictWord(verdict);
@@ -369,9 +367,8 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   json["fitted_parameters"] = fittedJson(f.fitted);
   addInnovations(verdict, json);
   json["undetectable_below"] = ordered_json::object();
-  for (const auto& one : verdict.detectability) {
-    json["undetectable_below"][candidates[one.candidate].id] = orNull(one.amplitude);
-  }
+  for (const auto& one : verdict.detectability)
+    json["undetectable_below"][f.data.candidates()[one.candidate].id] = orNull(one.amplitude);
   json["next_experiment"] = f.nextExperiment;
   addPlannedExperiments(f, json);
   json["noise_sd"] = orNull(verdict.sds.sd(0));
@@ -379,16 +376,20 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   json["samples"] = {{"recorded", verdict.noise.samples},
                      {"outliers", verdict.noise.outliers},
                      {"every", verdict.noise.spacing},
-                     {"rounded_to", orNull(f.wording.unit * verdict.noise.quantum)}};
+                     {"rounded_to", orNull(f.wording.unit * verdict.noise.quantum)},
+                     {"noise_reduced_to", orNull(verdict.noise.reduced)}};
   json["noise_estimated"] = verdict.sdEstimated;
   json["wall_s"] = orNull(f.wallSeconds);
   json["processor_s"] = orNull(f.processorSeconds);
   json["probability_vetoed"] = verdict.vetoed;
+  if (verdict.reserved) {
+    json["remainder"] = {{"force_rms", orNull(verdict.remainingForce)},
+                         {"unit", f.wording.axes.at(verdict.remainingAxis).forceUnit}};
+    addAxis(f, verdict.remainingAxis, json["remainder"]);
+  }
   json["numerical_error_in_noise_sd"] = orNull(verdict.numericalError);
   json["already_in_the_model"] = ordered_json::object();
-  for (const auto& [id, where] : f.wording.present) {
-    json["already_in_the_model"][id] = where;
-  }
+  for (const auto& [id, where] : f.wording.present) json["already_in_the_model"][id] = where;
   json["evidence"] = evidenceJson(f);
   json["not_raced"] = notRacedJson(f);
   if (verdict.nonparametric) json["force_without_a_name"] = nonparametricForceJson(f);

@@ -46,14 +46,25 @@ nlohmann::ordered_json effectJson(const bio::discover::EncompassingModel& model,
 
 }  // namespace
 
+std::vector<bio::discover::UserEffect> readOwnEffects(const std::vector<std::string>& files,
+                                                      Summary& summary) {
+  std::vector<bio::discover::UserEffect> own;
+  for (const std::string& file : files) {
+    summary.addInput(file);
+    for (auto& effect : bio::discover::readUserEffects(file)) own.push_back(std::move(effect));
+  }
+  return own;
+}
+
 ExitStatus listEffects(const CommandContext& context, const std::string& file,
-                       SimulationOptions simulation) {
+                       const std::vector<std::string>& own, SimulationOptions simulation) {
   Summary summary(context);
   const bio::Model model = readModel(file, summary);
   chooseCoordinates(simulation, model, {});
   movableSystem(model, file, simulation, summary);  // warns and refuses as a search would
   const bio::discover::EncompassingModel encompassing = bio::discover::encompassingModel(
-      model, systemOptions(simulation), coordinatesInQuestion(simulation, {}));
+      model, systemOptions(simulation), coordinatesInQuestion(simulation, {}), {}, {}, 0, {},
+      readOwnEffects(own, summary));
   if (context.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const Candidate& candidate : encompassing.candidates())

@@ -1,7 +1,12 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
+#include "bio/discovery/user_effect.h"
 #include "options/simulation_options.h"
 #include "output/command_context.h"
+#include "output/summary.h"
 
 /// `fisherhill discover --list-effects MODEL`.
 namespace app {
@@ -9,8 +14,14 @@ namespace app {
 /// Prints a line for every effect that `discover` looks for in the model: id, name, kind, and its
 /// parameters with units; with --json also the long name of the id, the sentence, and the effects
 /// that the same data never tell from it. Effects that the model already has come last.
+/// @param own  files of effects of the user's own, listed like the others
 /// @throws std::invalid_argument, bio::FileError for bad input
 ExitStatus listEffects(const CommandContext& context, const std::string& model,
-                       SimulationOptions simulation);
+                       const std::vector<std::string>& own, SimulationOptions simulation);
+
+/// The effects of several files, which become inputs.
+/// @throws bio::FileError as readUserEffects
+std::vector<bio::discover::UserEffect> readOwnEffects(const std::vector<std::string>& files,
+                                                      Summary& summary);
 
 }  // namespace app

@@ -17,6 +17,7 @@ struct ModelDiscoveryRequest {
   std::vector<std::string> trials;   ///< files, with a measured coordinate
   std::vector<std::string> heldOut;  ///< files of held-out trials
   std::vector<std::string> without;  ///< ids of effects to leave out of the catalogue
+  std::vector<std::string> effects;  ///< files of effects of the user's own
   /// Standard deviation of every measured angle [deg], or of the position that is measured alone
   /// [m].
   std::optional<double> noise;

@@ -32,6 +32,12 @@ std::string optionsOf(const SimulationOptions& options, bool withStep) {
   return text;
 }
 
+/// The effects in the written model are only the closest match, or found with steps that are too
+/// long.
+bool mayBeWrong(const info::discover::Verdict& verdict) {
+  return !mayBeAdded(verdict) && !(verdict.formula && verdict.formula->wins);
+}
+
 class DiscoveryWriter {
  public:
   DiscoveryWriter(const DiscoveryToWrite& discovery, Summary& summary, OutputFolder& folder)
@@ -66,7 +72,9 @@ class DiscoveryWriter {
       if (trial.driven)
         written_.replayFiles[trial.index] = writeDriven(trial, number, model, folder_);
     }
-    written_.model = result_.addsEffect ? "with_effect.osim" : "refitted.osim";
+    written_.model = !result_.addsEffect                 ? "refitted.osim"
+                     : mayBeWrong(result_.found.verdict) ? "closest_match.osim"
+                                                         : "with_effect.osim";
     writeOsim(written_.model, model);
     if (result_.effectOnly) writeOsim("effect_only.osim", result_.effectOnly->model);
     for (const RepairedTrial& trial : repaired.trials)
@@ -131,8 +139,8 @@ class DiscoveryWriter {
 }  // namespace
 
 std::vector<std::string> namesOfDiscovery(std::size_t training, std::size_t heldOut) {
-  std::vector<std::string> names = {"verdict.json", "parameters.csv", "with_effect.osim",
-                                    "effect_only.osim", "refitted.osim"};
+  std::vector<std::string> names = {"verdict.json",     "parameters.csv",     "with_effect.osim",
+                                    "effect_only.osim", "closest_match.osim", "refitted.osim"};
   // trials that are held out may be fitted after all
   for (std::size_t i = 1; i <= training + heldOut; ++i) names.push_back(drivenName(i, false));
   for (std::size_t i = 1; i <= heldOut; ++i) names.push_back(drivenName(i, true));

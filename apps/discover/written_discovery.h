@@ -38,7 +38,8 @@ struct DiscoveryToWrite {
   bio::discover::DiscoveryResult& result;  ///< its repaired model gets the starts of driven_N.sto
 };
 
-/// Writes with_effect.osim (or refitted.osim if no effect is missing), effect_only.osim and, if the
+/// Writes with_effect.osim (or closest_match.osim if its effects are not the missing one,
+/// refitted.osim if no effect is missing), effect_only.osim and, if the
 /// effect concerns the EMG, the sensor or a switched-off muscle, or if the trials were cut, the
 /// corrected or cut trials driven_N.sto and driven_held_out_N.sto. The results are the same without
 /// a folder.

@@ -159,8 +159,8 @@ class Ensemble : public Command {
     if (!pool->leads() && !pool->start()) return ExitStatus::done;
     if (!discover_.empty()) {
       return discoverInSets(
-          {model_, {}, {}, {}, noise_, {}, maxEffects_, inputScatter_, {}, simulation_}, discover_,
-          context, *pool, threads);
+          {model_, {}, {}, {}, {}, noise_, {}, maxEffects_, inputScatter_, {}, simulation_},
+          discover_, context, *pool, threads);
     }
     if (!pool->leads()) {
       Summary summary(context);

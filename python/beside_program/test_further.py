@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import pathlib
 import subprocess
 import tempfile
 import unittest
@@ -47,6 +48,17 @@ class Further(AsTheProgram):
         self.assertIn("payload", two)
         with self.assertRaises(ValueError):
             fh.list_effects(self.model, coordinate="knee")
+
+    def test_effects_of_ones_own_stand_beside_the_catalogue(self):
+        example = pathlib.Path("emg_data/effects.toml")
+        plain = [one.id for one in fh.list_effects(self.model).effects]
+        listed = fh.list_effects(self.model, effects=[example]).effects
+        self.assertEqual([one.id for one in listed], [*plain, "thinning"])
+        self.assertEqual(listed[-1].parameters, {"thinning.c": "N m s/rad", "thinning.v": "rad/s"})
+        for call in (lambda: fh.list_effects(self.model, effects=[example, example]),
+                     lambda: fh.discover(self.model, [self.slow], effects=[example, str(example)])):
+            with self.assertRaisesRegex(ValueError, "there is another effect of this name"):
+                call()
 
     def test_motions_of_others_differ_from_the_reference_as_in_the_program(self):
         times, angle = self.slow.measured["elbow_flexion"]

@@ -5,7 +5,7 @@
 #include <optional>
 #include <variant>
 
-#include "systems.h"
+#include "arguments/file_name.h"
 #include "bio/discovery/effect_names.h"
 #include "bio/discovery/effects.h"
 #include "bio/discovery/workflow.h"
@@ -16,12 +16,23 @@
 #include "info/discovery/judgement/separation.h"
 #include "info/version.h"
 #include "interruptible.h"
+#include "systems.h"
 
 namespace python {
 namespace {
 
 using bio::discover::MusculoskeletalProblem;
 using info::discover::Verdict;
+using OwnEffects = std::vector<FileName>;
+
+/// The effects of these files.
+std::vector<bio::discover::UserEffect> effectsIn(const OwnEffects& files) {
+  std::vector<bio::discover::UserEffect> effects;
+  for (const FileName& file : files)
+    for (auto& effect : bio::discover::readUserEffects(file.text))
+      effects.push_back(std::move(effect));
+  return effects;
+}
 
 py::object effectOf(const MusculoskeletalProblem& data, const info::discover::NamedEffect& effect,
                     const bio::discover::EffectSize& size) {
@@ -133,12 +144,13 @@ py::list outputsOf(const MusculoskeletalProblem& data, const Verdict& verdict) {
 }
 
 py::object listEffects(const bio::Model& model, const Names& coordinate,
-                       const std::map<std::string, double>& lock) {
+                       const std::map<std::string, double>& lock, const OwnEffects& own) {
   const SystemChoice choice = systemChoice(model, {}, coordinate, lock, "vi", {});
   std::optional<bio::discover::EncompassingModel> encompassing;
+  const std::vector<bio::discover::UserEffect> beside = effectsIn(own);
   interruptible([&](const std::atomic<bool>&) {
-    encompassing.emplace(
-        bio::discover::encompassingModel(model, choice.systemOptions(), inQuestion(choice, {})));
+    encompassing.emplace(bio::discover::encompassingModel(
+        model, choice.systemOptions(), inQuestion(choice, {}), {}, {}, 0, {}, beside));
   });
   py::list effects;
   for (const info::discover::Candidate& candidate : encompassing->candidates()) {
@@ -158,8 +170,8 @@ py::object listEffects(const bio::Model& model, const Names& coordinate,
 
 py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                     const std::vector<bio::Trial>& holdOut, const std::optional<GivenNoise>& noise,
-                    const std::vector<std::string>& without, int maxEffects,
-                    std::optional<double> inputScatter, const Names& coordinate,
+                    const std::vector<std::string>& without, const OwnEffects& own,
+                    int maxEffects, std::optional<double> inputScatter, const Names& coordinate,
                     const std::map<std::string, double>& lock, const std::string& integrator,
                     std::optional<double> firstStep) {
   const SystemChoice choice = systemChoice(model, trials, coordinate, lock, integrator, firstStep);
@@ -180,6 +192,7 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   asked.problem.simulation = choice.simulation();
   asked.problem.simulation.duration = 1;
   asked.problem.without = without;
+  asked.problem.own = effectsIn(own);
   asked.search = searchOptions(maxEffects, inputScatter);
   asked.problem.sensors = outputs;
   if (noise) asked.search.sds = noiseOf(*noise, model, outputs);
@@ -214,11 +227,12 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
 void defineDiscovery(py::module_& module) {
   module.def("list_effects", &listEffects, "model"_a, py::kw_only(),
              "coordinate"_a = std::vector<std::string>(),
-             "lock"_a = std::map<std::string, double>(), docstrings::list_effects);
+             "lock"_a = std::map<std::string, double>(), "effects"_a = std::vector<FileName>(),
+             docstrings::list_effects);
   defineWithChoice(module, "discover", &discover, docstrings::discover, "model"_a, "trials"_a,
                    py::kw_only(), "hold_out"_a = std::vector<bio::Trial>(), "noise"_a = py::none(),
-                   "without"_a = std::vector<std::string>(), "max_effects"_a = 3,
-                   "input_scatter"_a = py::none());
+                   "without"_a = std::vector<std::string>(), "effects"_a = std::vector<FileName>(),
+                   "max_effects"_a = 3, "input_scatter"_a = py::none());
 }
 
 }  // namespace python

@@ -110,7 +110,8 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
                                       options.formula, options.formulaAxis,
                                       options.sensors.empty()
                                           ? measuredOutputs(trials, system, coordinates.all)
-                                          : options.sensors)),
+                                          : options.sensors,
+                                      options.own)),
       options_(std::move(options)),
       quantities_(encompassing_.quantities()),
       nuisances_(encompassing_.nuisances()) {

@@ -114,6 +114,8 @@ std::string creditsOf(const MusculoskeletalProblem& data, const Verdict& verdict
       credits += (i ? ", " : " to ") + provenance.data[i];
   }
   const auto numbers = fittedNumbers(data, verdict);
+  if (!mayBeAdded(verdict) || verdict.vetoed)
+    credits += "; with the reservation: " + verdict.sentence;
   return credits + "; together with them " + std::to_string(numbers.size()) +
          " values in total were fitted, listed in parameters.csv";
 }
@@ -133,7 +135,7 @@ std::vector<EffectToAdd> effectsToAdd(const MusculoskeletalProblem& data, const 
       effect.sds[i] = found.estimates[static_cast<std::size_t>(i)].sd;
     }
     effect.logBayesFactor = found.logBayesFactor;
-    effect.probability = verdict.vetoed ? 0 : found.probability;
+    effect.probability = verdict.vetoed || verdict.surrogate ? 0 : found.probability;
     effects.push_back(std::move(effect));
   }
   return effects;

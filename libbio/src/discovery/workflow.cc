@@ -86,6 +86,19 @@ std::string refitSentence(const MusculoskeletalProblem& data, const Verdict& ver
                      100 * (number->estimate / number->nominal - 1));
 }
 
+/// What is left where effects are named although the residual is not noise.
+std::string remainderSentence(const MusculoskeletalProblem& data, const Verdict& verdict) {
+  if (!verdict.reserved || !verdict.heldOut) return {};
+  const info::discover::ExcessError& error = *verdict.heldOut;
+  const auto& axis = data.encompassing().coordinates().at(verdict.remainingAxis).coordinate;
+  return fmt::format(
+      " The held-out error falls from {} to {}, with {} of noise; left is a {} of {:.2g} {} "
+      "(root mean square) on {}.",
+      errorText(data, verdict, error.calibrated), errorText(data, verdict, error.after),
+      errorText(data, verdict, error.floor), axis.isRotation ? "moment" : "force",
+      verdict.remainingForce, axis.isRotation ? "N m" : "N", axis.name);
+}
+
 /// The trials up to a break; empty if one of them is too short then.
 std::vector<Trial> partsBefore(const DiscoveryRequest& request,
                                const info::discover::PositionBreak& found) {
@@ -150,7 +163,9 @@ void repair(const DiscoveryRequest& request, DiscoveryResult& result) {
   } else if (mayBeAdded(verdict)) {
     repaired(*result.data, verdict);
     effectOnly(*result.data, verdict);
-  } else if (verdict.reached == Stage::finished && verdict.finding == Finding::none) {
+  } else if (verdict.reached == Stage::finished &&
+             (verdict.finding == Finding::none || !verdict.effects.empty())) {
+    result.addsEffect = !verdict.effects.empty();
     repaired(*result.data, verdict);
   } else {
     result.trials = recordedTrials(*result.data, verdict, heldOut, request.step);
@@ -178,13 +193,37 @@ void searchUnlessContradicted(const DiscoveryRequest& request, DiscoveryResult& 
     return;
   }
   searchBeforeBreak(request, result);
+}
+
+/// The agreement of the excitations as the muscles of the repaired model receive them, e.g. with
+/// channels exchanged back; NaN if they are those that were recorded.
+double correlationAfter(const DiscoveryRequest& request, const DiscoveryResult& result) {
+  if (!result.repaired) return NAN;
+  const Model& model = result.repaired->added.model;
+  std::vector<Trial> driven;
+  for (const RepairedTrial& one : result.repaired->trials)
+    if (one.driven)
+      driven.push_back(
+          drivenTrial(*one.driven, result.data->trial(static_cast<int>(one.index)), model));
+  if (driven.empty()) return NAN;
+  return inputAgreement(model, request.system, request.coordinates, driven, [] { return false; })
+      .correlation;
+}
+
+/// No name is believed whose excitations have nothing to do with the motion, unless it is what
+/// explains that.
+void doubtUnrelated(const DiscoveryRequest& request, DiscoveryResult& result) {
+  const InputAgreement& inputs = result.inputs;
+  Verdict& verdict = result.found.verdict;
   if (!(inputs.correlation < InputAgreement::unrelated) || !mayBeAdded(verdict)) return;
+  if (correlationAfter(request, result) >= InputAgreement::largeEnough) return;
   verdict.vetoed = true;
   verdict.probability = 0;
   verdict.sentence += fmt::format(
       " But the muscles' moments are unrelated to those that the motion requires (correlation "
       "{:.2f}): are the excitations of this trial, this side and these muscles?",
       inputs.correlation);
+  repair(request, result);  // its credits give no probability then
 }
 
 }  // namespace
@@ -197,6 +236,7 @@ DiscoveryResult discover(const DiscoveryRequest& request) {
   Verdict& verdict = result.found.verdict;
   const MusculoskeletalProblem& data = *result.data;
   repair(request, result);
+  doubtUnrelated(request, result);
   const std::vector<int>& heldOut = result.found.options.heldOut;
   if (!heldOut.empty()) result.shown = heldOut.front();
   for (const auto& effect : verdict.effects)
@@ -204,6 +244,7 @@ DiscoveryResult discover(const DiscoveryRequest& request) {
   if (result.repaired) takeReplays(verdict, *result.repaired);
   result.fitted = fittedNumbers(data, verdict);
   verdict.sentence += refitSentence(data, verdict, result.fitted);
+  verdict.sentence += remainderSentence(data, verdict);
   if (verdict.reached == Stage::finished) {
     MusculoskeletalProblemOptions options = request.problem;
     options.simulation.step = data.options().simulation.step;

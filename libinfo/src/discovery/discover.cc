@@ -1,4 +1,4 @@
-#include "info/discovery/discover.h"
+#include "discovery/search_once.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +10,7 @@
 #include "discovery/finalists.h"
 #include "discovery/judgement/held_out_trials.h"
 #include "discovery/judgement/replication.h"
+#include "discovery/judgement/step_error.h"
 #include "discovery/likelihood/selected_samples.h"
 #include "discovery/likelihood/watched_problem.h"
 #include "discovery/nonparametric/nonparametric_force.h"
@@ -20,7 +21,6 @@
 #include "info/discovery/judgement/decide.h"
 #include "info/discovery/judgement/expected_error.h"
 #include "info/discovery/judgement/output_sd.h"
-#include "info/discovery/search/needed_memory.h"
 
 namespace info::discover {
 
@@ -73,7 +73,7 @@ class Work {
     verdict_.finding = Finding::none;
     verdict_.effects.clear();
     verdict_.probability = 0;
-    verdict_.vetoed = verdict_.surrogate = false;
+    verdict_.vetoed = verdict_.surrogate = verdict_.reserved = false;
   }
 
   // The fits before the search was stopped, and the score map of the base model. The sentence names
@@ -126,29 +126,27 @@ class Work {
     report(Stage::localise, 0.2, "");
   }
 
-  // If a simulation depends on its time step, no conclusion about the system is possible. Tested
+  // If a simulation depends on its time step, no conclusion about the system is certain. Tested
   // with the final effects: a base model with a missing effect may diverge, and then every step is
-  // too long.
-  bool stepsTooLong() {
-    const VectorXd& values = search_->simulation(chosen_).values;
-    int worst = 0;
-    for (const int t : trials_) {
-      const VectorXd refined = data_.refinedOutputs(t, values);
-      if (refined.size() == 0) continue;
-      VectorXd moved = refined - data_.outputs(t, values, {});
-      verdict_.sds.whiten(data_.outputOfSample(t), moved);
-      const double change = moved.cwiseAbs().maxCoeff();
-      if (!(change > verdict_.numericalError)) continue;
-      verdict_.numericalError = change;
-      worst = t;
-    }
-    if (verdict_.numericalError <= options_.numericalTolerance) return false;
-    verdict_.finding = Finding::numerical;
-    verdict_.sentence = fmt::format(
+  // too long. Returns what is to be said, if it is so.
+  std::string stepsTooLong() {
+    const StepError error =
+        stepError(data_, trials_, search_->simulation(chosen_).values, verdict_.sds);
+    verdict_.numericalError = error.largest;
+    if (error.largest <= options_.numericalTolerance) return "";
+    return fmt::format(
         "Halving the time step changes the simulation of {} by {:.2g} standard deviations of the "
         "measurement noise: use shorter steps.",
-        data_.trialName(worst), verdict_.numericalError);
-    return true;
+        data_.trialName(error.trial), error.largest);
+  }
+
+  // What was found with steps that are too long is told, not trusted.
+  void reserveForSteps(const std::string& why) {
+    verdict_.finding = Finding::numerical;
+    verdict_.vetoed = !verdict_.effects.empty() && !verdict_.surrogate;
+    verdict_.probability = 0;
+    verdict_.sentence =
+        verdict_.effects.empty() ? why : why + " With these steps: " + verdict_.sentence;
   }
 
   void base() {
@@ -199,7 +197,10 @@ class Work {
     addMoves(search_->likelihood(), after.fit, verdict_.nuisancesAfter);
     gaps(before, after, judgement);
     judgement.explained = verdict_.excess.closedFromCalibrated;
-    if (stepsTooLong()) return;
+    judgement.heldOutExplained =
+        verdict_.heldOut ? verdict_.heldOut->closedFromCalibrated : std::nullopt;
+    const std::string tooLong = stepsTooLong();
+    if (!tooLong.empty() && !options_.concludesNumerical) return reserveForSteps(tooLong);
     Decision decision = decide(data_.candidates(), judgement, options_);
     const Fit smoothing =
         before.fit.noise.latent > 0 ? before.fit : refit(before, options_.latentScale);
@@ -216,6 +217,8 @@ class Work {
     verdict_.probability = decision.probability;
     verdict_.vetoed = decision.vetoed;
     verdict_.surrogate = decision.surrogate;
+    verdict_.reserved = decision.reserved;
+    if (decision.reserved) remainingForce(refit(after, options_.latentScale));
     collectRivals();
     // a parameter in error that is evident without a comparison of candidates
     if (decision.finding == Finding::parameter && decision.effects.empty())
@@ -250,6 +253,13 @@ class Work {
       verdict_.formula = raceFormula(*search_, *verdict_.unknown, chosen_, optionsOfFormula());
     }
     verdict_.sentence = verdictSentence(data_, verdict_, options_, !chosen_.empty());
+    if (!tooLong.empty()) reserveForSteps(tooLong);
+  }
+
+  void remainingForce(const Fit& fit) {
+    const auto [axis, size] = strongestForce(search_->likelihood(), fit);
+    verdict_.remainingAxis = axis;
+    verdict_.remainingForce = size;
   }
 
   void collectRivals() {
@@ -370,17 +380,11 @@ class Work {
 
 }  // namespace
 
-Verdict run(const DiscoveryProblem& data, const Options& options, WarmStart* draft) {
-  const std::vector<int> trials = fittedTrials(data, options);
-  requireMemory(data, trials, availableMemory());
-  RecordedNoise noise;
-  if (options.judgeSamples)
-    noise = recordedNoise(data, trials, options.sds);
-  else if (!options.sds)
-    noise.sd = estimateOutputSd(data, trials);
-  if (noise.usesAll()) return Work(data, options, std::move(noise)).run(draft);
+Verdict searchOnce(const DiscoveryProblem& data, const Options& options, const RecordedNoise& noise,
+                   WarmStart* draft) {
+  if (noise.usesAll()) return Work(data, options, noise).run(draft);
   const SelectedSamples selected(data, noise.kept);
-  return Work(selected, options, std::move(noise)).run(draft);
+  return Work(selected, options, noise).run(draft);
 }
 
 }  // namespace info::discover

@@ -25,6 +25,7 @@ class VerdictSentence {
   }
 
   std::string farOff() const {
+    if (verdict_.reserved) return "";  // what is left is told
     if (!verdict_.heldOut || !verdict_.heldOut->probability ||
         !(*verdict_.heldOut->probability < options_.farOff))
       return "";
@@ -39,6 +40,17 @@ class VerdictSentence {
         " The held-out trials confirm little: they are predicted no better than to {:.1f} times "
         "their noise.",
         *verdict_.heldOut->expected / verdict_.heldOut->floor);
+  }
+
+  // What the effects do not explain, though they are named.
+  std::string reserved() const {
+    if (!verdict_.reserved) return "";
+    return fmt::format(
+               " {:.1f} % of the excess error of the held-out trials is explained, but what is "
+               "left "
+               "of the fitted trials is not noise.",
+               100 * *verdict_.heldOut->closedFromCalibrated) +
+           cause() + nonparametric();
   }
 
   // That the held-out trials show the same effects, though not with the same parameters.
@@ -61,6 +73,11 @@ class VerdictSentence {
     if (noise.outliers > 0)
       words += fmt::format(" {} of {} samples are outliers and were left out.", noise.outliers,
                            noise.samples);
+    if (noise.reduced < 1)
+      words += fmt::format(
+          " With the effects found, the residual was smaller than the first estimate of the noise; "
+          "the search was repeated with {:.2g} times that.",
+          noise.reduced);
     if (noise.spacing > 1)
       words += fmt::format(
           " The measurement noise is correlated, so only one sample in {:.2g} s was used.",
@@ -81,14 +98,14 @@ class VerdictSentence {
       case Finding::none:
         return "No missing effect above the detectable size." + scatter() + farOff();
       case Finding::parameter:
-        return "Parameter error: " + names + "." + scatter() + farOff() + vague();
+        return "Parameter error: " + names + "." + scatter() + reserved() + farOff() + vague();
       case Finding::named:
       case Finding::ambiguous:
         return "Missing: " + names +
-               (verdict_.vetoed && !verdict_.after.sized
+               (verdict_.vetoed && !verdict_.after.sized && !verdict_.reserved
                     ? "; the size of the residual does not match the noise."
                     : ".") +
-               scatter() + replicated() + farOff() + vague();
+               scatter() + replicated() + reserved() + farOff() + vague();
       case Finding::unknown:
         return "The model lacks an effect that is not in the catalogue." +
                (names.empty() ? std::string()

@@ -2555,6 +2555,7 @@ def discover(
     hold_out: Sequence[Trial] = [],
     noise: float | dict[str, float] | None = None,
     without: Sequence[str] = [],
+    effects: Sequence[_File] = [],
     max_effects: int = 3,
     input_scatter: float | None = None,
     coordinate: str | Sequence[str] = [],
@@ -2577,6 +2578,8 @@ def discover(
         {channel: standard deviation in its unit} of all of them. Default: estimated from the data.
     without : list of str
         Ids of effects to exclude from the catalogue.
+    effects : list of str or PathLike
+        TOML files of effects of your own, forces by a formula, to be looked for beside the catalogue.
     max_effects : int
         Largest number of effects in one hypothesis.
     input_scatter : float, optional
@@ -2596,7 +2599,7 @@ def discover(
     verdict : str
         'named', 'ambiguous' (effects that these data cannot distinguish), 'parameter' (a parameter of
         the model is in error), 'none', 'unknown' (something is missing that no effect of the catalogue
-        explains) or 'numerical' (the time step is too long).
+        explains) or 'numerical' (the time step is too long; the effects are those found with it).
     sentence : str
         The verdict in words.
     effects : list
@@ -2761,7 +2764,11 @@ class EffectList:
     present: dict[str, str]
 
 def list_effects(
-    model: Model, *, coordinate: str | Sequence[str] = [], lock: dict[str, float] = {}
+    model: Model,
+    *,
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    effects: Sequence[_File] = [],
 ) -> EffectList:
     """Lists the effects that discover looks for in the model.
 
@@ -2770,6 +2777,8 @@ def list_effects(
     model : Model
     coordinate, lock
         As in discover. Default of the coordinate: those that the model does not lock.
+    effects : list of str or PathLike
+        As in discover.
 
     Returns
     -------
@@ -2792,7 +2801,7 @@ def list_effects(
     Raises
     ------
     ValueError
-        For an unknown coordinate.
+        For an unknown coordinate, and what discover raises for effects.
     """
 
 @type_check_only

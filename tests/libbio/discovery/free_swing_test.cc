@@ -5,63 +5,26 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
 
 #include "bio/discovery/musculoskeletal_problem.h"
-#include "bio/opensim/osim_file.h"
+#include "bio/discovery/workflow.h"
 #include "info/discovery/discover.h"
-#include "support/scratch_folder.h"
+#include "libbio/discovery/free_swing.h"
 
 namespace bio::discover {
 namespace {
 
-using Eigen::Index;
 using Eigen::VectorXd;
 using testing::ElementsAre;
 
-constexpr double rodLength = 0.6, frictionPerMass = 0.03;
-
-/// A point mass on a rod.
-Model freePendulum(double mass) {
-  const support::ScratchFolder folder;
-  return readOsim(folder.file(
-      "pendulum.osim",
-      "<OpenSimDocument Version=\"30000\"><Model name=\"pendulum\"><gravity>0 -9.81 0</gravity>"
-      "<BodySet><objects><Body name=\"ground\"><mass>0</mass></Body><Body name=\"arm\"><mass>" +
-          std::to_string(mass) + "</mass><mass_center>0 " + std::to_string(-rodLength) +
-          " 0</mass_center><inertia_xx>0</inertia_xx><inertia_yy>0</inertia_yy><inertia_zz>0"
-          "</inertia_zz><inertia_xy>0</inertia_xy><inertia_xz>0</inertia_xz><inertia_yz>0"
-          "</inertia_yz><Joint><PinJoint name=\"pivot\"><parent_body>ground</parent_body>"
-          "<CoordinateSet><objects><Coordinate name=\"swing\"><default_value>0</default_value>"
-          "<range>-3 3</range></Coordinate></objects></CoordinateSet></PinJoint></Joint></Body>"
-          "</objects></BodySet><ForceSet><objects/></ForceSet></Model></OpenSimDocument>"));
-}
-
-/// Its damped swing by RK4, in degrees' noise of 0.2; the same for any mass.
-Trial freeSwing(double from, unsigned seed) {
-  Trial trial;
-  trial.file = "swing.csv";
-  trial.times = VectorXd::LinSpaced(151, 0, 3);
-  trial.excitations.resize(151, 0);
-  trial.measured.push_back({ofCoordinate("swing"), trial.times, VectorXd(151)});
-  std::mt19937 generator(seed);
-  std::normal_distribution<double> noise(0, 0.2 * std::acos(-1) / 180);
-  const auto bend = [](double q, double speed) {
-    return -9.81 / rodLength * std::sin(q) - frictionPerMass / (rodLength * rodLength) * speed;
-  };
-  double q = from, w = 0;
-  const double h = 0.001;
-  for (Index k = 0; k < 151; ++k) {
-    trial.measured.front().values[k] = q + noise(generator);
-    for (int i = 0; i < 20; ++i) {
-      const double q1 = w, w1 = bend(q, w), q2 = w + h / 2 * w1, w2 = bend(q + h / 2 * q1, q2),
-                   q3 = w + h / 2 * w2, w3 = bend(q + h / 2 * q2, q3), q4 = w + h * w3,
-                   w4 = bend(q + h * q3, q4);
-      q += h / 6 * (q1 + 2 * q2 + 2 * q3 + q4);
-      w += h / 6 * (w1 + 2 * w2 + 2 * w3 + w4);
-    }
-  }
-  return trial;
+MusculoskeletalProblem swings(double mass, double step) {
+  MusculoskeletalProblemOptions options;
+  options.simulation.step = step;
+  return {freePendulum(mass),
+          SystemOptions{{{"swing"}, {}}, {}, {}},
+          "swing",
+          {freeSwing(1.2, 1, viscous), freeSwing(0.7, 2, viscous), freeSwing(0.9, 3, viscous)},
+          options};
 }
 
 struct FoundInSwing {
@@ -71,11 +34,7 @@ struct FoundInSwing {
 };
 
 FoundInSwing foundInSwing(double mass) {
-  MusculoskeletalProblemOptions options;
-  options.simulation.step = 0.005;
-  const MusculoskeletalProblem data(
-      freePendulum(mass), SystemOptions{{{"swing"}, {}}, {}, {}}, "swing",
-      {freeSwing(1.2, 1), freeSwing(0.7, 2), freeSwing(0.9, 3)}, options);
+  const MusculoskeletalProblem data = swings(mass, 0.005);
   info::discover::Options search;
   search.heldOut = {2};
   const info::discover::Verdict verdict = info::discover::run(data, search);
@@ -98,6 +57,34 @@ TEST(FreeSwing, IsDampedWhateverThePendulumWeighs) {
   EXPECT_NEAR(light.value, 0.1 * frictionPerMass, 3 * light.sd);
   EXPECT_NEAR(heavy.value, 200 * light.value, 0.1 * heavy.sd);
   EXPECT_LT(light.sd, 0.1 * light.value);
+}
+
+// Steps that are too long: what was found is told and written, with the reservation in it.
+TEST(FreeSwing, WithLongStepsIsWrittenWithAReservation) {
+  const Model model = freePendulum(0.1);
+  MusculoskeletalProblemOptions options;
+  const DiscoveryRequest request{
+      model,
+      SystemOptions{{{"swing"}, {}}, {}, {}},
+      "swing",
+      {freeSwing(1.2, 1, viscous), freeSwing(0.7, 2, viscous), freeSwing(0.9, 3, viscous)},
+      1,
+      0.02,
+      options,
+      {},
+      {"a test", {"swing.csv"}}};
+  const DiscoveryResult result = discover(request);
+  const info::discover::Verdict& verdict = result.found.verdict;
+  EXPECT_EQ(verdict.finding, info::discover::Finding::numerical) << verdict.sentence;
+  ASSERT_FALSE(verdict.effects.empty());
+  EXPECT_EQ(result.data->candidates()[verdict.effects.front().candidate].id, "visc");
+  ASSERT_TRUE(result.repaired);
+  EXPECT_TRUE(result.addsEffect);
+  EXPECT_FALSE(result.effectOnly);
+  EXPECT_THAT(result.repaired->added.model.credits,
+              testing::HasSubstr("with the reservation: Halving the time step changes"));
+  for (const RepairedTrial& trial : result.trials)
+    EXPECT_NEAR(trial.after, trial.fitted, 1e-4) << trial.index;
 }
 
 // The energy is judged by the work that was done, of which there is none here.

@@ -179,6 +179,39 @@ TEST(Decide, CallsALeaderASurrogateWhereSomethingIsLeft) {
   }
 }
 
+// Tests that assume white noise of a known size mean little where the residual is neither.
+TEST(Decide, NamesWithAReservationWhatCarriesOverThoughTheResidualIsNotNoise) {
+  for (bool Adequacy::*noise : {&Adequacy::white, &Adequacy::sized})
+    for (int what = 0; what < 5; ++what) {
+      Judgement j = raced({{{0}, 30.0}}, {0});
+      if (what == 0) j.after.white = false;
+      if (what == 1) j.after.independent = false;
+      if (what == 2) j.after.causeless = false;
+      if (what == 3) j.strangeAfter = true;
+      if (what == 4) j.nonparametricWins = true;
+      const bool wasWhite = j.after.white;
+      j.heldOutExplained = 0.99;
+      if (wasWhite) EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::unknown) << what;
+      j.after.*noise = false;
+      const Decision d = decide(catalogue(), j, {});
+      EXPECT_EQ(d.finding, Finding::named) << what;
+      EXPECT_TRUE(d.reserved && d.vetoed && !d.surrogate) << what;
+      EXPECT_EQ(d.probability, 0);
+      for (const double share : {0.94, -1.0}) {
+        j.heldOutExplained = share;
+        EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::unknown) << what;
+      }
+      j.heldOutExplained.reset();  // nothing was held out, or nothing was to be explained
+      EXPECT_TRUE(decide(catalogue(), j, {}).surrogate) << what;
+      j.heldOutExplained = 0.99;
+      j.heldOutWorse = true;  // evidence against it
+      EXPECT_TRUE(decide(catalogue(), j, {}).surrogate) << what;
+    }
+  Judgement fits = raced({{{0}, 30.0}}, {0});
+  fits.heldOutExplained = 0.99;
+  EXPECT_FALSE(decide(catalogue(), fits, {}).reserved);
+}
+
 TEST(Decide, LetsInnovationsOfTheWrongSizeAndHeldOutTrialsFarOffOrVagueVetoTheProbability) {
   for (const int why : {0, 1, 2}) {
     Judgement j = raced({{{0}, 30.0}}, {0});

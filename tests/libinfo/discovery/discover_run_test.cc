@@ -125,6 +125,35 @@ TEST(Discover, GivesANameNoProbabilityWhereWhatWasHeldOutIsFarOff) {
       << off.sentence;
 }
 
+// Third differences take a noise that alternates, ±c, for √3.2 times as large.
+TEST(Discover, RepeatsTheSearchWhereTheResidualIsSmallerThanTheNoiseWasEstimated) {
+  LinearDisagreement data(3, 80);
+  VectorXd truth = nominalValues(data);
+  truth[1] = 1;
+  data.draw(4, truth, 0.01 * kOutput, 0, kTime);
+  for (int trial = 0; trial < 3; ++trial) {
+    VectorXd y = data.measured(trial);
+    for (Index k = 0; k < y.size(); ++k) y[k] += k % 2 == 0 ? kOutput : -kOutput;
+    data.measure(trial, y);
+  }
+  Options options;
+  options.judgeSamples = false;
+  options.latentScale = 1;
+  options.latentTime = kTime;
+  const Verdict again = run(data, options);
+  EXPECT_NEAR(again.noise.reduced, 1 / std::sqrt(3.2), 0.05);
+  EXPECT_NEAR(again.sds.sd(0), kOutput, 0.1 * kOutput);
+  EXPECT_THAT(again.sentence, testing::HasSubstr("repeated with 0.5"));
+  options.overestimated = 0;
+  const Verdict once = run(data, options);
+  EXPECT_EQ(once.noise.reduced, 1);
+  EXPECT_NEAR(once.sds.sd(0), std::sqrt(3.2) * kOutput, 0.1 * kOutput);
+  EXPECT_LT(once.fits, again.fits);
+  options.overestimated = Options().overestimated;
+  options.sds = 2 * kOutput;  // told
+  EXPECT_EQ(run(data, options).sds.sd(0), 2 * kOutput);
+}
+
 // A push so small that two trials do not carry it, but three do: asked a second time of all trials
 // where the held-out one is off.
 TEST(Discover, LooksOnceMoreWhereWhatWasHeldOutIsOff) {

@@ -115,6 +115,14 @@ TEST(SearchTrials, HoldsOutTheLastTrialsAndTakesTheOneStepThatIsGiven) {
   EXPECT_EQ(steps, std::vector<double>{0.04});
   EXPECT_EQ(given.verdict.finding, Finding::numerical);
   EXPECT_TRUE(given.options.heldOut.empty());
+  // what was found with it is told, not trusted
+  EXPECT_FALSE(given.verdict.effects.empty());
+  EXPECT_EQ(given.verdict.probability, 0);
+  EXPECT_THAT(given.verdict.sentence, testing::HasSubstr("use shorter steps. With these steps: "));
+  search.options.concludesNumerical = false;
+  const Verdict unfinished = run(*data, search.options);
+  EXPECT_EQ(unfinished.finding, Finding::numerical);
+  EXPECT_TRUE(unfinished.effects.empty());
 }
 
 TEST(SearchTrials, OnlyComparesTheNominalModelWhereThatIsAsked) {

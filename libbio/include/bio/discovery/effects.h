@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bio/discovery/encompassing_model.h"
+#include "bio/discovery/user_effect.h"
 
 namespace bio::discover {
 
@@ -81,11 +82,14 @@ std::vector<std::string> withoutElectrode(const EncompassingModel& model,
 /// @param without  ids of entries or of candidates, or their long names (effect_names.h)
 /// @param formula  if not empty, also addFormula of it, on the coordinate `axis`
 /// @param sensors  what is measured; empty: the coordinates
-/// @throws std::invalid_argument for an unknown id, with a list of the known ones
+/// @param own      effects beside those of the catalogue
+/// @throws std::invalid_argument for an unknown id, with a list of the known ones; for an effect of
+///   `own` with an id of the catalogue or of another, or on a coordinate that is not in question
 EncompassingModel encompassingModel(const Model& model, const SystemOptions& system,
                                     const CoordinateNames& coordinates,
                                     const std::vector<std::string>& without = {},
                                     const std::vector<info::discover::FormulaTerm>& formula = {},
-                                    std::size_t axis = 0, std::vector<Observable> sensors = {});
+                                    std::size_t axis = 0, std::vector<Observable> sensors = {},
+                                    const std::vector<UserEffect>& own = {});
 
 }  // namespace bio::discover

@@ -6,6 +6,7 @@
 
 #include "bio/analysis/replay.h"
 #include "bio/discovery/encompassing_model.h"
+#include "bio/discovery/user_effect.h"
 #include "bio/observation/nudge.h"
 #include "bio/simulation/simulate.h"
 #include "bio/tables/trial.h"
@@ -28,6 +29,7 @@ struct MusculoskeletalProblemOptions {
   bool trialsAreCut = false;         ///< they are parts of those in the files
   bool usableSeries = true;          ///< refuse measured series that requireUsable refuses
   std::vector<std::string> without;  ///< ids of effects to exclude from the catalogue
+  std::vector<UserEffect> own;       ///< effects beside those of the catalogue
   std::vector<info::discover::FormulaTerm> formula;  ///< of a candidate "formula"; empty: none
   std::size_t formulaAxis = 0;                       ///< the coordinate that it acts on
   std::vector<Observable> sensors;                   ///< outputs; empty: what the trials measure
@@ -35,7 +37,7 @@ struct MusculoskeletalProblemOptions {
 
 /// A search with too long a step is repeated with half the step, unless the step was shorter than
 /// this [s] (info::discover::runAtShorterSteps).
-inline constexpr double shortestSearchStep = 0.003;
+inline constexpr double shortestSearchStep = 0.0008;
 
 /// The observables that trials measure, in a problem's order: the coordinates in question that are
 /// not prescribed, then all other channels.

@@ -42,7 +42,8 @@ struct DiscoveryResult {
   bool trialsAreCut = false;
 
   /// The model with all fitted values, if the search has a model: with the effects found, with the
-  /// formula of an unknown effect, or, if nothing is missing, with refitted parameters only.
+  /// formula of an unknown effect or the closest match (Verdict::surrogate), or, if nothing is
+  /// missing, with refitted parameters only.
   std::optional<Repaired> repaired;
   bool addsEffect = false;              ///< `repaired` has an effect or a formula
   std::optional<Augmented> effectOnly;  ///< the effects found, all other values as in the request
@@ -57,7 +58,8 @@ struct DiscoveryResult {
 ///
 /// A recording that contradicts itself (inputAgreement() with remedies) is not searched: only the
 /// base model is fitted, the finding is `unknown`, and the sentence says what would make it agree.
-/// If the excitations are unrelated to the motion, no effect has a probability.
+/// If the excitations are unrelated to the motion, no effect has a probability, unless they are
+/// related as the muscles receive them with the effects found (channels exchanged back).
 ///
 /// The search is info::discover::searchTrials on a MusculoskeletalProblem. If it ends with an
 /// unknown effect and the model fails at a position at once (positionBreak), it is repeated with

@@ -109,13 +109,37 @@ void mustBeKnown(const EncompassingModel& encompassing, const std::vector<std::s
   }
 }
 
+void addUserEffect(EncompassingModel& model, const UserEffect& effect) {
+  const auto& all = effectEntries();
+  bool isThere = false;
+  for (const MovingCoordinate& at : model.coordinates()) {
+    if (!effect.coordinate.empty() && effect.coordinate != at.coordinate.name) continue;
+    isThere = true;
+    const bool isTaken = model.knows(model.idAt(at, effect.id)) || model.knows(effect.id) ||
+                         model.present().count(model.idAt(at, effect.id)) > 0 ||
+                         std::any_of(all.begin(), all.end(), [&](const EffectEntry& entry) {
+                           return effect.id == entry.id;
+                         });
+    if (isTaken)
+      throw std::invalid_argument(fmt::format(
+          "{}: id = \"{}\", there is another effect of this name", effect.file, effect.id));
+    addExpression(model, at,
+                  {effect.id, effect.name, effect.sentence, effect.expression, effect.symbols,
+                   effect.quantities, effect.starts});
+  }
+  if (isThere) return;
+  throw std::invalid_argument(fmt::format("{}: coordinate = \"{}\", which is not in question",
+                                          effect.file, effect.coordinate));
+}
+
 }  // namespace
 
 EncompassingModel encompassingModel(const Model& model, const SystemOptions& system,
                                     const CoordinateNames& coordinates,
                                     const std::vector<std::string>& leftOut,
                                     const std::vector<info::discover::FormulaTerm>& formula,
-                                    std::size_t axis, std::vector<Observable> sensors) {
+                                    std::size_t axis, std::vector<Observable> sensors,
+                                    const std::vector<UserEffect>& own) {
   const std::vector<std::string> without = effectIds(leftOut);
   EncompassingModel encompassing(model, system, coordinates, std::move(sensors));
   addNuisances(encompassing);
@@ -131,6 +155,7 @@ EncompassingModel encompassingModel(const Model& model, const SystemOptions& sys
       for (std::size_t i = 0; i < encompassing.sensors().size(); ++i) (*ofSensor)(encompassing, i);
     }
   }
+  for (const UserEffect& effect : own) addUserEffect(encompassing, effect);
   mustBeKnown(encompassing, without);
   encompassing.forget(without);
   if (!formula.empty()) addFormula(encompassing, encompassing.coordinates().at(axis), formula);

@@ -57,6 +57,8 @@ struct Options {
   /// Largest change of the outputs at half the time step [σ_y]; beyond it the finding is
   /// `numerical`.
   double numericalTolerance = 0.2;
+  /// Whether a verdict `numerical` has the effects that were found with this time step.
+  bool concludesNumerical = true;
   bool judgeSamples = true;  ///< exclude outliers, and samples with correlated noise
   bool symbolic = true;      ///< search a formula if no effect of the catalogue fits
   /// runAtShorterSteps: if the fitted trials show nothing and errors as large as those of the
@@ -73,6 +75,12 @@ struct Options {
   /// Smallest share of the excess squared error that effects must explain in simulation to be
   /// named.
   double leastExplained = 0.05;
+  /// Share of the excess squared error of the held-out trials from which effects are named, without
+  /// a probability, although the residual is not the noise that the tests of adequacy assume.
+  double carriesOver = 0.95;
+  /// If the mean square of the innovations with the effects found is smaller than this, an
+  /// estimated σ_y is reduced accordingly and the search repeated, twice at most; 0: never.
+  double overestimated = 0.5;
   /// Called between fits; returning false ends the search, and the verdict holds the results so
   /// far.
   std::function<bool(const Progress&)> progress;
@@ -184,9 +192,14 @@ struct Verdict {
   double probability = 0;            ///< of all effects together; 0 if none is given
   /// Effects are named, but without a probability: the innovations have the wrong size, the errors
   /// of the held-out trials are improbably large (Options::farOff), no agreement with them would
-  /// confirm anything (Options::vague), or these trials show the effects only with parameters of
-  /// their own (Replication).
+  /// confirm anything (Options::vague), what is left is not noise (reserved), or these trials show
+  /// the effects only with parameters of their own (Replication).
   bool vetoed = false;
+  /// The effects are named because they carry over to the held-out trials (Options::carriesOver),
+  /// though the residual of the fitted trials is not noise.
+  bool reserved = false;
+  double remainingForce = NAN;  ///< then: its root mean square [unit of remainingAxis's force]
+  std::size_t remainingAxis = 0;
   bool surrogate = false;  ///< finding unknown: `effects` is only a proxy for the missing effect
   /// Nothing was found without the held-out trials, although their errors were too large. All
   /// trials were therefore fitted, and none is left for validation (Options::secondLook).

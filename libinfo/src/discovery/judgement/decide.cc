@@ -90,9 +90,16 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
   const Adequacy& after = judgement.after;
   const bool contradicted = judgement.heldOutWorse || judgement.strangeAfter;
   const bool explainsNothing = judgement.explained && *judgement.explained < options.leastExplained;
-  if (!after.white || !after.independent || !after.causeless ||
-      judgement.latentAfter > options.latentTolerance || (contradicted && !judgement.replicated) ||
-      stretched || judgement.nonparametricWins || explainsNothing) {
+  const bool denied =
+      stretched || explainsNothing || (judgement.heldOutWorse && !judgement.replicated);
+  const bool incomplete = !after.white || !after.independent || !after.causeless ||
+                          judgement.latentAfter > options.latentTolerance ||
+                          judgement.nonparametricWins ||
+                          (judgement.strangeAfter && !judgement.replicated);
+  const bool carriesOver =
+      judgement.heldOutExplained && *judgement.heldOutExplained >= options.carriesOver;
+  decision.reserved = incomplete && !denied && carriesOver && !(after.white && after.sized);
+  if (denied || (incomplete && !decision.reserved)) {
     decision.finding = Finding::unknown;
     decision.surrogate = true;
     decision.probability = 0;
@@ -100,7 +107,8 @@ Decision decide(const std::vector<Candidate>& candidates, const Judgement& judge
     return decision;
   }
   decision.finding = !alone ? Finding::ambiguous : parameters ? Finding::parameter : Finding::named;
-  if (!after.sized || judgement.heldOutFarOff || judgement.heldOutVague || contradicted) {
+  if (decision.reserved || !after.sized || judgement.heldOutFarOff || judgement.heldOutVague ||
+      contradicted) {
     decision.vetoed = true;
     decision.probability = 0;
   }

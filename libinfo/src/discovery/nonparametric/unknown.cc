@@ -28,10 +28,26 @@ std::size_t strongestAxis(const Likelihood& likelihood, const Fit& fit) {
   return static_cast<std::size_t>(strongest);
 }
 
+double sizeOf(const std::vector<VectorXd>& forces) {
+  double power = 0, count = 0;
+  for (const VectorXd& d : forces) {
+    power += d.squaredNorm();
+    count += static_cast<double>(d.size());
+  }
+  return std::sqrt(power / count);
+}
+
+std::vector<VectorXd> forcesOn(std::size_t axis, const Likelihood& likelihood, const Fit& fit) {
+  std::vector<VectorXd> forces;
+  for (std::size_t t = 0; t < likelihood.trials().size(); ++t)
+    forces.emplace_back(onAxis(likelihood.force(t, fit), axis, likelihood.data().axes().size()));
+  return forces;
+}
+
 void spectrum(const Likelihood& likelihood, const Fit& fit,
               const std::vector<std::vector<double>>& times, const std::vector<VectorXd>& forces,
               Unknown& unknown) {
-  double power = 0, count = 0, peak = -1;
+  double peak = -1;
   std::vector<double> density;
   const double step = 0.1;
   for (double f = step; f < 9; f += step) {
@@ -65,25 +81,22 @@ void spectrum(const Likelihood& likelihood, const Fit& fit,
       near += density[i];
   }
   unknown.peakShare = total > 0 ? near / total : 0;
-  for (const VectorXd& d : forces) {
-    power += d.squaredNorm();
-    count += static_cast<double>(d.size());
-  }
-  unknown.forceSize = std::sqrt(power / count);
+  unknown.forceSize = sizeOf(forces);
 }
 
 }  // namespace
 
+std::pair<std::size_t, double> strongestForce(const Likelihood& likelihood, const Fit& fit) {
+  const std::size_t axis = strongestAxis(likelihood, fit);
+  return {axis, sizeOf(forcesOn(axis, likelihood, fit))};
+}
+
 Unknown describeUnknown(const Likelihood& likelihood, const Fit& fit) {
   Unknown unknown;
   unknown.axis = strongestAxis(likelihood, fit);
+  const std::vector<VectorXd> forces = forcesOn(unknown.axis, likelihood, fit);
   std::vector<std::vector<double>> times;
-  std::vector<VectorXd> forces;
-  for (std::size_t t = 0; t < likelihood.trials().size(); ++t) {
-    times.push_back(nodeTimes(likelihood.data(), likelihood.trials()[t]));
-    forces.emplace_back(
-        onAxis(likelihood.force(t, fit), unknown.axis, likelihood.data().axes().size()));
-  }
+  for (const int trial : likelihood.trials()) times.push_back(nodeTimes(likelihood.data(), trial));
   spectrum(likelihood, fit, times, forces, unknown);
   unknown.tie = timeTie(times, forces);
   findFormula(likelihood, fit, unknown);

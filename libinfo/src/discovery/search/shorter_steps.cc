@@ -19,6 +19,7 @@ SteppedVerdict runOnce(const MakeAttempt& attempt, double step, double shortest)
   for (bool first = true;; first = false) {
     Attempt one = attempt(step);
     if (!first) one.options.numericalTolerance *= 2;
+    one.options.concludesNumerical = step < shortest;
     try {
       Verdict verdict = run(one.data, one.options, &draft);
       if (verdict.finding != Finding::numerical || step < shortest)

@@ -15,6 +15,7 @@ struct RecordedNoise {
   int spacing = 1;           ///< every spacing-th sample is kept because of correlated noise
   double interval = 0;       ///< between those [s], if `spacing` > 1
   double quantum = 0;        ///< quantisation step of the output; 0: negligible
+  double reduced = 1;        ///< by which the residual of a first search reduced σ_y
   std::size_t outliers = 0;  ///< number of excluded outliers
   std::size_t samples = 0;   ///< that there are
   std::vector<std::vector<std::size_t>> kept;  ///< indices of the samples to use, by trial

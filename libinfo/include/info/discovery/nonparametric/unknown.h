@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "info/discovery/likelihood/joint_fit.h"
@@ -44,6 +45,10 @@ struct Unknown {
   bool stable = false;   ///< every term selected in 90 % of the bootstraps
   std::string formula;   ///< e.g. "−0.42·q̇|q̇| + 0.1·q"
 };
+
+/// The axis of the most certain latent force, as Unknown::axis, and the root mean square of its
+/// force over all nodes [unit of the generalised force].
+std::pair<std::size_t, double> strongestForce(const Likelihood& likelihood, const Fit& fit);
 
 /// @param fit of the base model with a latent force of the estimated size
 Unknown describeUnknown(const Likelihood& likelihood, const Fit& fit);
