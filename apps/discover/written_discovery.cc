@@ -35,7 +35,9 @@ std::string optionsOf(const SimulationOptions& options, bool withStep) {
 /// The effects in the written model are only the closest match, or found with steps that are too
 /// long.
 bool mayBeWrong(const info::discover::Verdict& verdict) {
-  return !mayBeAdded(verdict) && !(verdict.formula && verdict.formula->wins);
+  const bool isFormula = verdict.finding == info::discover::Finding::unknown && verdict.formula &&
+                         verdict.formula->wins;
+  return !mayBeAdded(verdict) && !isFormula;
 }
 
 class DiscoveryWriter {

@@ -191,7 +191,9 @@ TEST(Decide, NamesWithAReservationWhatCarriesOverThoughTheResidualIsNotNoise) {
       if (what == 4) j.nonparametricWins = true;
       const bool wasWhite = j.after.white;
       j.heldOutExplained = 0.99;
-      if (wasWhite) EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::unknown) << what;
+      if (wasWhite) {
+        EXPECT_EQ(decide(catalogue(), j, {}).finding, Finding::unknown) << what;
+      }
       j.after.*noise = false;
       const Decision d = decide(catalogue(), j, {});
       EXPECT_EQ(d.finding, Finding::named) << what;

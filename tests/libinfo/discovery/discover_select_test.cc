@@ -211,4 +211,22 @@ TEST(Search, FitsAnEffectAgainWithoutOneThatIsAbsentBesideIt) {
   expectTheRightOneAlone(data, verdictOn(data), kPlace, 2 * kPlace);
 }
 
+// e_4 and e_5 are measured; the first makeshift, e_4 + e_5 + 0.7 e_6, explains four fifths of that.
+// Beside it neither gains enough, and only both together explain all.
+TEST(Search, LooksBesideAnEffectThatAlmostEarnsItsPlaceForAnother) {
+  const double size = 0.115;
+  Astray data;
+  data.centre = 100;  // so that "right" acts by e_4 whatever θ is
+  data.makeshift[0] = Astray::wave(4) + Astray::wave(5) + 0.7 * Astray::wave(6);
+  data.makeshift[1] = Astray::wave(5);
+  data.stranger = size * (Astray::wave(4) + Astray::wave(5));
+  data.draw(6, 0, 0);
+  const Verdict v = verdictOn(data);
+  ASSERT_EQ(v.effects.size(), 2U) << v.sentence;
+  EXPECT_EQ(data.candidates()[v.effects[0].candidate].id, "right");
+  EXPECT_EQ(data.candidates()[v.effects[1].candidate].id, "second");
+  EXPECT_NEAR(v.values[1], size, 0.03);
+  EXPECT_NEAR(v.values[3], size, 0.03);
+}
+
 }  // namespace

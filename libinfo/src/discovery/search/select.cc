@@ -12,6 +12,7 @@ constexpr int kRivals = 7;
 // More single effects that are fitted if nothing was found although, without the latent force, a
 // linear step of theirs promises evidence.
 constexpr std::size_t kMore = 8;
+constexpr double kAlmost = 0.5;       // share of the evidence that a further effect almost has
 constexpr std::size_t kPartners = 2;  // alternatives of each of two effects that are tried together
 
 class Selection {
@@ -38,7 +39,7 @@ class Selection {
       chosen_ = best();
       while (swapOne() || swapTwo()) {
       }
-      if (chosen_ == before && !replaceOne(list) && !raceMore() &&
+      if (chosen_ == before && !replaceOne(list) && !raceMore() && !swapBeside(list) &&
           !(chosen_.empty() && latentForceRemains() && simplify()))
         break;
     }
@@ -172,6 +173,35 @@ class Selection {
     for (std::size_t i = 0; i < std::min(ranked.size(), kPartners); ++i)
       best.push_back(ranked[i].second);
     return best;
+  }
+
+  // A further effect that gains almost enough beside these may gain more beside others, of which
+  // one of these is a proxy: sub-linear damping of dry friction and drag.
+  bool swapBeside(const std::vector<std::size_t>& list) {
+    const Effects now = chosen_;
+    if (now.empty() || static_cast<int>(now.size()) >= options_.maxEffects) return false;
+    std::size_t newcomer = 0;
+    double most = search_.at(now).score + kAlmost * options_.evidence;
+    bool isThere = false;
+    for (const std::size_t one : list) {
+      const auto both = search_.entries().find(with(now, one));
+      if (both == search_.entries().end() || !(both->second.score > most)) continue;
+      most = both->second.score;
+      newcomer = one;
+      isThere = true;
+    }
+    if (!isThere) return false;
+    for (const std::size_t old : now) {
+      const Effects others = without(now, old), rest = with(others, newcomer);
+      if (search_.entries().count(rest) == 0) {
+        if (search_.entries().count(others) == 0) continue;
+        search_.race(others, {newcomer});
+      }
+      search_.race(rest, search_.shortlist(rest, kRivals));
+    }
+    search_.enforceNesting();
+    chosen_ = best();
+    return chosen_ != now;
   }
 
   // A new effect that gains much but makes an earlier one superfluous replaces it.
