@@ -166,28 +166,21 @@ Contents checkRecording(const std::string& file, Findings& findings, Summary& su
   return std::move(contents.parts);
 }
 
-bool hasCoordinate(const bio::Model& model, const std::string& name) {
-  return std::any_of(model.joints.begin(), model.joints.end(), [&](const bio::Joint& joint) {
-    return std::any_of(joint.coordinates.begin(), joint.coordinates.end(),
-                       [&](const bio::Coordinate& each) { return each.name == name; });
-  });
-}
-
 /// Effects of the user's own, as discover --effect reads them.
 Contents checkEffects(const std::string& file, const std::vector<bio::Model>& models,
                       Findings& findings) {
   Table table{"Effects", {"id", "coordinate", "force", "parameters"}, {}};
-  for (const bio::discover::UserEffect& effect : bio::discover::readUserEffects(file)) {
+  for (const bio::discover::UserEffect& effect : bio::discover::readUserEffects({file})) {
     for (const bio::Model& model : models)
-      if (!effect.coordinate.empty() && !hasCoordinate(model, effect.coordinate))
+      if (!effect.coordinate.empty() && bio::coordinateOrNull(model, effect.coordinate) == nullptr)
         findings.add(file, "error",
                      fmt::format("effect '{}': the model “{}” has no coordinate '{}'", effect.id,
                                  model.name, effect.coordinate));
     std::vector<std::string> parameters;
-    for (std::size_t i = 0; i < effect.symbols.size(); ++i) {
+    for (std::size_t i = 0; i < effect.constants.size(); ++i) {
       const info::discover::Quantity& each = effect.quantities[i];
       parameters.push_back(
-          fmt::format("{} = {} ± {} {}", effect.symbols[i], each.nominal, each.sd, each.unit));
+          fmt::format("{} = {} ± {} {}", effect.constants[i], each.nominal, each.sd, each.unit));
     }
     table.rows.push_back({effect.id, effect.coordinate.empty() ? "each" : effect.coordinate,
                           effect.expression, fmt::format("{}", fmt::join(parameters, ", "))});

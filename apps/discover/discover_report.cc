@@ -121,7 +121,7 @@ class Writer {
                           : ""));
     }
     if (verdict.vetoed) {
-      if (verdict.reserved)
+      if (verdict.remainder)
         say("The residual of the fitted trials is not noise alone, so no probability is given: the "
             "effects are named because they carry over to the held-out trials.");
       else if (verdict.finding == info::discover::Finding::numerical)

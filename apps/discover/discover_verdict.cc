@@ -382,10 +382,10 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   json["wall_s"] = orNull(f.wallSeconds);
   json["processor_s"] = orNull(f.processorSeconds);
   json["probability_vetoed"] = verdict.vetoed;
-  if (verdict.reserved) {
-    json["remainder"] = {{"force_rms", orNull(verdict.remainingForce)},
-                         {"unit", f.wording.axes.at(verdict.remainingAxis).forceUnit}};
-    addAxis(f, verdict.remainingAxis, json["remainder"]);
+  if (const auto& left = verdict.remainder) {
+    json["remainder"] = {{"force_rms", orNull(left->size)},
+                         {"unit", f.wording.axes.at(left->axis).forceUnit}};
+    addAxis(f, left->axis, json["remainder"]);
   }
   json["numerical_error_in_noise_sd"] = orNull(verdict.numericalError);
   json["already_in_the_model"] = ordered_json::object();

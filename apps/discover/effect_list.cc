@@ -46,16 +46,6 @@ nlohmann::ordered_json effectJson(const bio::discover::EncompassingModel& model,
 
 }  // namespace
 
-std::vector<bio::discover::UserEffect> readOwnEffects(const std::vector<std::string>& files,
-                                                      Summary& summary) {
-  std::vector<bio::discover::UserEffect> own;
-  for (const std::string& file : files) {
-    summary.addInput(file);
-    for (auto& effect : bio::discover::readUserEffects(file)) own.push_back(std::move(effect));
-  }
-  return own;
-}
-
 ExitStatus listEffects(const CommandContext& context, const std::string& file,
                        const std::vector<std::string>& own, SimulationOptions simulation) {
   Summary summary(context);
@@ -63,8 +53,8 @@ ExitStatus listEffects(const CommandContext& context, const std::string& file,
   chooseCoordinates(simulation, model, {});
   movableSystem(model, file, simulation, summary);  // warns and refuses as a search would
   const bio::discover::EncompassingModel encompassing = bio::discover::encompassingModel(
-      model, systemOptions(simulation), coordinatesInQuestion(simulation, {}), {}, {}, 0, {},
-      readOwnEffects(own, summary));
+      model, systemOptions(simulation), coordinatesInQuestion(simulation, {}),
+      {.own = bio::discover::readUserEffects(own)});
   if (context.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const Candidate& candidate : encompassing.candidates())

@@ -3,10 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "bio/discovery/user_effect.h"
 #include "options/simulation_options.h"
 #include "output/command_context.h"
-#include "output/summary.h"
 
 /// `fisherhill discover --list-effects MODEL`.
 namespace app {
@@ -18,10 +16,5 @@ namespace app {
 /// @throws std::invalid_argument, bio::FileError for bad input
 ExitStatus listEffects(const CommandContext& context, const std::string& model,
                        const std::vector<std::string>& own, SimulationOptions simulation);
-
-/// The effects of several files, which become inputs.
-/// @throws bio::FileError as readUserEffects
-std::vector<bio::discover::UserEffect> readOwnEffects(const std::vector<std::string>& files,
-                                                      Summary& summary);
 
 }  // namespace app

@@ -10,7 +10,6 @@
 #include "bio/model/units.h"
 #include "discover/discover_results.h"
 #include "discover/discover_search.h"
-#include "discover/effect_list.h"
 #include "discover/proposed_experiments_text.h"
 #include "discover/suggested_experiments.h"
 #include "discover/written_discovery.h"
@@ -171,13 +170,13 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
   const bio::SystemOptions system = systemOptions(request.simulation);
   const bio::MusculoskeletalSystem compiled(model, system);
   for (const std::string& warning : compiled.warnings()) summary.warn(warning);
-  const std::vector<bio::discover::UserEffect> own = readOwnEffects(request.effects, summary);
+  for (const std::string& file : request.effects) summary.addInput(file);
   bio::discover::DiscoveryRequest asked{
       model, system, coordinates, trials, request.heldOut.size(), request.simulation.step,
       {},    {},     {}};
   asked.problem.simulation = simulationOptions(request.simulation, 0, 1);
   asked.problem.without = request.without;
-  asked.problem.own = own;
+  asked.problem.own = bio::discover::readUserEffects(request.effects);
   asked.search = engineOptions(request.maxEffects, request.inputScatter);
   asked.problem.sensors = bio::discover::measuredOutputs(trials, system, coordinates);
   std::vector<ShownOutput> outputs;

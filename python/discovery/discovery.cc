@@ -25,13 +25,10 @@ using bio::discover::MusculoskeletalProblem;
 using info::discover::Verdict;
 using OwnEffects = std::vector<FileName>;
 
-/// The effects of these files.
 std::vector<bio::discover::UserEffect> effectsIn(const OwnEffects& files) {
-  std::vector<bio::discover::UserEffect> effects;
-  for (const FileName& file : files)
-    for (auto& effect : bio::discover::readUserEffects(file.text))
-      effects.push_back(std::move(effect));
-  return effects;
+  std::vector<std::string> names;
+  for (const FileName& file : files) names.push_back(file.text);
+  return bio::discover::readUserEffects(names);
 }
 
 py::object effectOf(const MusculoskeletalProblem& data, const info::discover::NamedEffect& effect,
@@ -147,10 +144,10 @@ py::object listEffects(const bio::Model& model, const Names& coordinate,
                        const std::map<std::string, double>& lock, const OwnEffects& own) {
   const SystemChoice choice = systemChoice(model, {}, coordinate, lock, "vi", {});
   std::optional<bio::discover::EncompassingModel> encompassing;
-  const std::vector<bio::discover::UserEffect> beside = effectsIn(own);
+  const bio::discover::CatalogueChoice catalogue{.own = effectsIn(own)};
   interruptible([&](const std::atomic<bool>&) {
-    encompassing.emplace(bio::discover::encompassingModel(
-        model, choice.systemOptions(), inQuestion(choice, {}), {}, {}, 0, {}, beside));
+    encompassing.emplace(bio::discover::encompassingModel(model, choice.systemOptions(),
+                                                          inQuestion(choice, {}), catalogue));
   });
   py::list effects;
   for (const info::discover::Candidate& candidate : encompassing->candidates()) {
@@ -170,8 +167,8 @@ py::object listEffects(const bio::Model& model, const Names& coordinate,
 
 py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                     const std::vector<bio::Trial>& holdOut, const std::optional<GivenNoise>& noise,
-                    const std::vector<std::string>& without, const OwnEffects& own,
-                    int maxEffects, std::optional<double> inputScatter, const Names& coordinate,
+                    const std::vector<std::string>& without, const OwnEffects& own, int maxEffects,
+                    std::optional<double> inputScatter, const Names& coordinate,
                     const std::map<std::string, double>& lock, const std::string& integrator,
                     std::optional<double> firstStep) {
   const SystemChoice choice = systemChoice(model, trials, coordinate, lock, integrator, firstStep);

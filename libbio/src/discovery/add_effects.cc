@@ -118,8 +118,8 @@ Augmented addEffects(const Model& model, const SystemOptions& system,
                      const CoordinateNames& coordinates, const std::vector<EffectToAdd>& effects,
                      const EffectProvenance& provenance,
                      const std::vector<info::discover::FormulaTerm>& formula, std::size_t axis) {
-  return addEffects(encompassingModel(model, system, coordinates, {}, formula, axis), effects,
-                    provenance);
+  const CatalogueChoice choice{.formula = formula, .formulaAxis = axis};
+  return addEffects(encompassingModel(model, system, coordinates, choice), effects, provenance);
 }
 
 }  // namespace bio::discover

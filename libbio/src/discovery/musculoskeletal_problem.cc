@@ -102,16 +102,23 @@ std::vector<std::string> coordinatesInQuestion(const std::vector<std::string>& f
   return names;
 }
 
+namespace {
+
+/// With what the trials measure as outputs, unless some are chosen.
+CatalogueChoice withOutputs(CatalogueChoice choice, const std::vector<Trial>& trials,
+                            const SystemOptions& system, const CoordinateNames& coordinates) {
+  if (choice.sensors.empty()) choice.sensors = measuredOutputs(trials, system, coordinates.all);
+  return choice;
+}
+
+}  // namespace
+
 MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemOptions& system,
                                                const CoordinateNames& coordinates,
                                                std::vector<Trial> trials,
                                                MusculoskeletalProblemOptions options)
-    : encompassing_(encompassingModel(model, withTables(system), coordinates, options.without,
-                                      options.formula, options.formulaAxis,
-                                      options.sensors.empty()
-                                          ? measuredOutputs(trials, system, coordinates.all)
-                                          : options.sensors,
-                                      options.own)),
+    : encompassing_(encompassingModel(model, withTables(system), coordinates,
+                                      withOutputs(options, trials, system, coordinates))),
       options_(std::move(options)),
       quantities_(encompassing_.quantities()),
       nuisances_(encompassing_.nuisances()) {

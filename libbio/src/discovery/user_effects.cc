@@ -32,9 +32,9 @@ class ParameterReader {
   void read(TomlTable& table) {
     const std::string symbol = symbolOf(table, "name");
     if (symbol == "q" || symbol == "qdot" ||
-        std::count(effect_.symbols.begin(), effect_.symbols.end(), symbol))
+        std::count(effect_.constants.begin(), effect_.constants.end(), symbol))
       table.fail("name", "has a meaning already");
-    const bool isAmplitude = effect_.symbols.empty();
+    const bool isAmplitude = effect_.constants.empty();
     Quantity quantity;
     quantity.name = effect_.id + "." + symbol;
     quantity.unit = table.text("unit").value_or("");
@@ -63,7 +63,7 @@ class ParameterReader {
         table.fail("starts", "must lie within the bounds and not be 0");
     table.finish();
     if (isAmplitude) starts_ = starts ? *starts : usualStarts(quantity);
-    effect_.symbols.push_back(symbol);
+    effect_.constants.push_back(symbol);
     effect_.quantities.push_back(quantity);
   }
 
@@ -105,11 +105,11 @@ bool vanishesWithoutAmplitude(const Expression& force, const UserEffect& effect)
 
 void checkExpression(const UserEffect& effect, const TomlTable& table) {
   std::vector<std::string> variables = {"q", "qdot"};
-  variables.insert(variables.end(), effect.symbols.begin(), effect.symbols.end());
+  variables.insert(variables.end(), effect.constants.begin(), effect.constants.end());
   try {
     if (!vanishesWithoutAmplitude(Expression(effect.expression, variables), effect))
       table.fail("expression",
-                 "must vanish where " + effect.symbols.front() + ", the first parameter, is 0");
+                 "must vanish where " + effect.constants.front() + ", the first parameter, is 0");
   } catch (const std::invalid_argument& error) {
     table.fail("expression", error.what());
   }
@@ -134,19 +134,23 @@ UserEffect readEffect(TomlTable& table, const std::string& file) {
   return effect;
 }
 
-}  // namespace
-
-std::vector<UserEffect> readUserEffects(const std::string& file) {
+void readFile(const std::string& file, std::vector<UserEffect>& effects) {
   TomlTable table = TomlTable::read(file);
   std::vector<TomlTable> tables = table.tables("effect");
   table.finish();
   (void)table.required("effect", tables.empty() ? std::optional<int>() : std::optional<int>(1));
-  std::vector<UserEffect> effects;
   std::set<std::string> ids;
-  for (TomlTable& one : tables) {
-    effects.push_back(readEffect(one, file));
-    if (!ids.insert(effects.back().id).second) one.fail("id", "is given twice");
+  for (TomlTable& each : tables) {
+    effects.push_back(readEffect(each, file));
+    if (!ids.insert(effects.back().id).second) each.fail("id", "is given twice");
   }
+}
+
+}  // namespace
+
+std::vector<UserEffect> readUserEffects(const std::vector<std::string>& files) {
+  std::vector<UserEffect> effects;
+  for (const std::string& file : files) readFile(file, effects);
   return effects;
 }
 

@@ -88,15 +88,15 @@ std::string refitSentence(const MusculoskeletalProblem& data, const Verdict& ver
 
 /// What is left where effects are named although the residual is not noise.
 std::string remainderSentence(const MusculoskeletalProblem& data, const Verdict& verdict) {
-  if (!verdict.reserved || !verdict.heldOut) return {};
+  if (!verdict.remainder || !std::isfinite(verdict.heldOut->after)) return {};
   const info::discover::ExcessError& error = *verdict.heldOut;
-  const auto& axis = data.encompassing().coordinates().at(verdict.remainingAxis).coordinate;
+  const auto& axis = data.encompassing().coordinates().at(verdict.remainder->axis).coordinate;
   return fmt::format(
       " The held-out error falls from {} to {}, with {} of noise; left is a {} of {:.2g} {} "
       "(root mean square) on {}.",
       errorText(data, verdict, error.calibrated), errorText(data, verdict, error.after),
       errorText(data, verdict, error.floor), axis.isRotation ? "moment" : "force",
-      verdict.remainingForce, axis.isRotation ? "N m" : "N", axis.name);
+      verdict.remainder->size, axis.isRotation ? "N m" : "N", axis.name);
 }
 
 /// The trials up to a break; empty if one of them is too short then.

@@ -1,11 +1,10 @@
-#include "discovery/search_once.h"
+#include "info/discovery/discover.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <stdexcept>
 
 #include "discovery/finalists.h"
 #include "discovery/judgement/held_out_trials.h"
@@ -21,6 +20,7 @@
 #include "info/discovery/judgement/decide.h"
 #include "info/discovery/judgement/expected_error.h"
 #include "info/discovery/judgement/output_sd.h"
+#include "info/discovery/search/needed_memory.h"
 
 namespace info::discover {
 
@@ -28,6 +28,8 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
+
+constexpr int kMostRepeated = 2;
 
 // The state of run() from stage to stage.
 class Work {
@@ -41,15 +43,14 @@ class Work {
 
   Verdict run(WarmStart* draft) {
     try {
-      prepare(draft != nullptr ? draft->get() : nullptr);
-      stage_ = Stage::race;
-      report(Stage::screen, 0.25, "");
-      chosen_ = select(*search_, options_);
-      search_->refineEvidence(chosen_, options_.classWidth);
-      if (draft != nullptr)
-        *draft = std::make_shared<const SearchMemory>(SearchMemory{
-            search_->entries(), chosen_, search_->scaleValues(), search_->hasRacedFromNominal()});
-      judge();
+      const WarmStart memory = draft != nullptr ? *draft : nullptr;
+      if (memory != nullptr) verdict_.noise.reduce(memory->noiseReduced);
+      search(memory.get(), draft);
+      for (int i = 0; i < kMostRepeated && isOverestimated(); ++i) {
+        verdict_.noise.reduce(std::sqrt(verdict_.after.meanSquare));
+        fits_ += search_->fits();
+        search(nullptr, draft);  // what was found with another noise is worth nothing
+      }
       conclude();
       verdict_.reached = Stage::finished;
       report(Stage::finished, 1, "");
@@ -58,7 +59,7 @@ class Work {
       forgetDecision();
       verdict_.sentence = "Stopped before the end" + keepWhatIsThere() + ".";
     }
-    if (search_) verdict_.fits = search_->fits() + nonparametricFits_;
+    if (search_) verdict_.fits = fits_ + search_->fits() + nonparametricFits_;
     return verdict_;
   }
 
@@ -73,7 +74,8 @@ class Work {
     verdict_.finding = Finding::none;
     verdict_.effects.clear();
     verdict_.probability = 0;
-    verdict_.vetoed = verdict_.surrogate = verdict_.reserved = false;
+    verdict_.vetoed = verdict_.surrogate = false;
+    verdict_.remainder.reset();
   }
 
   // The fits before the search was stopped, and the score map of the base model. The sentence names
@@ -126,6 +128,31 @@ class Work {
     report(Stage::localise, 0.2, "");
   }
 
+  void search(const SearchMemory* memory, WarmStart* draft) {
+    prepare(memory);
+    stage_ = Stage::race;
+    report(Stage::screen, 0.25, "");
+    chosen_ = select(*search_, options_);
+    search_->refineEvidence(chosen_, options_.classWidth);
+    if (draft != nullptr)
+      *draft = std::make_shared<const SearchMemory>(
+          SearchMemory{search_->entries(), chosen_, search_->scaleValues(),
+                       search_->hasRacedFromNominal(), verdict_.noise.reduced});
+    judge();
+    tooLong_ = stepsTooLong();
+  }
+
+  bool isFinal() const { return tooLong_.empty() || options_.concludesNumerical; }
+
+  // Whether the residual is much smaller than the noise that was estimated, as where errors of the
+  // model passed for correlated noise.
+  bool isOverestimated() const {
+    if (options_.sds || !data_.outputOfSample(0).empty() || !isFinal()) return false;
+    const double square = verdict_.after.meanSquare;
+    return square > 0 && square < options_.overestimated &&
+           std::sqrt(square) * verdict_.sds.sd(0) > verdict_.noise.leastSd();
+  }
+
   // If a simulation depends on its time step, no conclusion about the system is certain. Tested
   // with the final effects: a base model with a missing effect may diverge, and then every step is
   // too long. Returns what is to be said, if it is so.
@@ -141,12 +168,12 @@ class Work {
   }
 
   // What was found with steps that are too long is told, not trusted.
-  void reserveForSteps(const std::string& why) {
+  void reserveForSteps() {
     verdict_.finding = Finding::numerical;
     verdict_.vetoed = !verdict_.effects.empty() && !verdict_.surrogate;
     verdict_.probability = 0;
     verdict_.sentence =
-        verdict_.effects.empty() ? why : why + " With these steps: " + verdict_.sentence;
+        verdict_.effects.empty() ? tooLong_ : tooLong_ + " With these steps: " + verdict_.sentence;
   }
 
   void base() {
@@ -187,11 +214,7 @@ class Work {
     judgement.after = verdict_.after;
     judgement.latentBefore = verdict_.latentSizeBefore;
     judgement.latentAfter = verdict_.latentSizeAfter;
-    const Estimate* worst = nullptr;
-    for (const Estimate& e : verdict_.calibration)
-      if (data_.quantities()[e.quantity].trial < 0 &&
-          (worst == nullptr || std::abs(e.priorZ) > std::abs(worst->priorZ)))
-        worst = &e;
+    const Estimate* worst = farthestFromPrior(verdict_.calibration, data_);
     if (worst != nullptr) judgement.priorZ = std::abs(worst->priorZ);
 
     addMoves(search_->likelihood(), after.fit, verdict_.nuisancesAfter);
@@ -199,8 +222,7 @@ class Work {
     judgement.explained = verdict_.excess.closedFromCalibrated;
     judgement.heldOutExplained =
         verdict_.heldOut ? verdict_.heldOut->closedFromCalibrated : std::nullopt;
-    const std::string tooLong = stepsTooLong();
-    if (!tooLong.empty() && !options_.concludesNumerical) return reserveForSteps(tooLong);
+    if (!isFinal()) return reserveForSteps();
     Decision decision = decide(data_.candidates(), judgement, options_);
     const Fit smoothing =
         before.fit.noise.latent > 0 ? before.fit : refit(before, options_.latentScale);
@@ -217,22 +239,12 @@ class Work {
     verdict_.probability = decision.probability;
     verdict_.vetoed = decision.vetoed;
     verdict_.surrogate = decision.surrogate;
-    verdict_.reserved = decision.reserved;
-    if (decision.reserved) remainingForce(refit(after, options_.latentScale));
+    if (decision.reserved)
+      verdict_.remainder =
+          strongestForce(search_->likelihood(), refit(after, options_.latentScale));
     collectRivals();
-    // a parameter in error that is evident without a comparison of candidates
     if (decision.finding == Finding::parameter && decision.effects.empty())
-      for (std::size_t c = 0; c < data_.candidates().size(); ++c)
-        if (data_.candidates()[c].kind == EffectKind::parameter &&
-            data_.candidates()[c].quantities[0] == worst->quantity) {
-          NamedEffect named;
-          named.candidate = c;
-          named.estimates = {*worst};
-          named.equals = {c};
-          named.equalEvidence = {0};
-          verdict_.effects.push_back(named);
-          break;
-        }
+      verdict_.effects = evidentError(*worst, data_);
 
     // score map of the base model, with the scatter of inputs estimated together with the effects
     const bool small = before.fit.noise.latent <= options_.latentTolerance;
@@ -253,13 +265,7 @@ class Work {
       verdict_.formula = raceFormula(*search_, *verdict_.unknown, chosen_, optionsOfFormula());
     }
     verdict_.sentence = verdictSentence(data_, verdict_, options_, !chosen_.empty());
-    if (!tooLong.empty()) reserveForSteps(tooLong);
-  }
-
-  void remainingForce(const Fit& fit) {
-    const auto [axis, size] = strongestForce(search_->likelihood(), fit);
-    verdict_.remainingAxis = axis;
-    verdict_.remainingForce = size;
+    if (!tooLong_.empty()) reserveForSteps();
   }
 
   void collectRivals() {
@@ -329,9 +335,10 @@ class Work {
     }
     explainExcess(other);
     verdict_.heldOut = other;
-    verdict_.heldOutBefore = heldOutAdequacy(without.meanSquare, held);
-    verdict_.heldOutAfter =
-        chosen_.empty() ? verdict_.heldOutBefore : heldOutAdequacy(with.meanSquare, held);
+    verdict_.heldOutBefore = heldOutAdequacy(without.meanSquare, held.samples(), test_);
+    verdict_.heldOutAfter = chosen_.empty()
+                                ? verdict_.heldOutBefore
+                                : heldOutAdequacy(with.meanSquare, held.samples(), test_);
     judgement.strangeBefore = !verdict_.heldOutBefore->expected();
     judgement.strangeAfter = !verdict_.heldOutAfter->expected();
     judgement.heldOutFarOff = other.probability && *other.probability < options_.farOff;
@@ -360,11 +367,6 @@ class Work {
     return estimatesOf(*held.starts, starts, data_);
   }
 
-  HeldOutAdequacy heldOutAdequacy(double meanSquare, const Likelihood& held) const {
-    const auto n = static_cast<double>(held.samples());
-    return {meanSquare, chiSquareQuantile(options_.level, n) / n * std::exp(3.29 * test_.sdError)};
-  }
-
   WatchedProblem data_;
   const Options& options_;
   bool stopped_ = false;
@@ -374,17 +376,25 @@ class Work {
   Effects chosen_;
   Stage stage_ = Stage::calibrate;
   double fraction_ = 0;
+  std::string tooLong_;  // what is to be said of the time step, if anything
+  int fits_ = 0;         // of earlier searches
   int nonparametricFits_ = 0;
   Verdict verdict_;
 };
 
 }  // namespace
 
-Verdict searchOnce(const DiscoveryProblem& data, const Options& options, const RecordedNoise& noise,
-                   WarmStart* draft) {
-  if (noise.usesAll()) return Work(data, options, noise).run(draft);
+Verdict run(const DiscoveryProblem& data, const Options& options, WarmStart* draft) {
+  const std::vector<int> trials = fittedTrials(data, options);
+  requireMemory(data, trials, availableMemory());
+  RecordedNoise noise;
+  if (options.judgeSamples)
+    noise = recordedNoise(data, trials, options.sds);
+  else if (!options.sds)
+    noise.sd = estimateOutputSd(data, trials);
+  if (noise.usesAll()) return Work(data, options, std::move(noise)).run(draft);
   const SelectedSamples selected(data, noise.kept);
-  return Work(selected, options, noise).run(draft);
+  return Work(selected, options, std::move(noise)).run(draft);
 }
 
 }  // namespace info::discover

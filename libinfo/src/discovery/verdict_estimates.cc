@@ -1,5 +1,6 @@
 #include "discovery/verdict_estimates.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace info::discover {
@@ -25,6 +26,30 @@ std::vector<Estimate> estimatesOf(const Fit& fit, const std::vector<std::size_t>
     result.push_back(e);
   }
   return result;
+}
+
+const Estimate* farthestFromPrior(const std::vector<Estimate>& estimates,
+                                  const DiscoveryProblem& data) {
+  const Estimate* farthest = nullptr;
+  for (const Estimate& e : estimates)
+    if (data.quantities()[e.quantity].trial < 0 &&
+        (farthest == nullptr || std::abs(e.priorZ) > std::abs(farthest->priorZ)))
+      farthest = &e;
+  return farthest;
+}
+
+std::vector<NamedEffect> evidentError(const Estimate& estimate, const DiscoveryProblem& data) {
+  const std::vector<Candidate>& candidates = data.candidates();
+  const auto at = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& each) {
+    return each.kind == EffectKind::parameter && each.quantities[0] == estimate.quantity;
+  });
+  if (at == candidates.end()) return {};
+  NamedEffect named;
+  named.candidate = static_cast<std::size_t>(at - candidates.begin());
+  named.estimates = {estimate};
+  named.equals = {named.candidate};
+  named.equalEvidence = {0};
+  return {named};
 }
 
 void addMoves(const Likelihood& likelihood, const Fit& fit, std::vector<Estimate>& estimates) {

@@ -25,7 +25,7 @@ class VerdictSentence {
   }
 
   std::string farOff() const {
-    if (verdict_.reserved) return "";  // what is left is told
+    if (verdict_.remainder) return "";  // what is left is told
     if (!verdict_.heldOut || !verdict_.heldOut->probability ||
         !(*verdict_.heldOut->probability < options_.farOff))
       return "";
@@ -44,11 +44,10 @@ class VerdictSentence {
 
   // What the effects do not explain, though they are named.
   std::string reserved() const {
-    if (!verdict_.reserved) return "";
+    if (!verdict_.remainder) return "";
     return fmt::format(
                " {:.1f} % of the excess error of the held-out trials is explained, but what is "
-               "left "
-               "of the fitted trials is not noise.",
+               "left of the fitted trials is not noise.",
                100 * *verdict_.heldOut->closedFromCalibrated) +
            cause() + nonparametric();
   }
@@ -102,7 +101,7 @@ class VerdictSentence {
       case Finding::named:
       case Finding::ambiguous:
         return "Missing: " + names +
-               (verdict_.vetoed && !verdict_.after.sized && !verdict_.reserved
+               (verdict_.vetoed && !verdict_.after.sized && !verdict_.remainder
                     ? "; the size of the residual does not match the noise."
                     : ".") +
                scatter() + replicated() + reserved() + farOff() + vague();

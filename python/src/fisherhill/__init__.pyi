@@ -2713,8 +2713,9 @@ def discover(
         force, sd : array
             The force there, and its standard deviation [N m] or [N].
     model : Model or None
-        The model with the effects, if any, and all fitted parameters. None unless effects are named
-        that are not proxies, or nothing is missing.
+        The model with the effects, if any, and all fitted parameters; also of effects that are only
+        proxies or were found with a step that is too long, which its credits say. None where
+        something is missing and no effect was found.
     trials : list
         For each trial:
 

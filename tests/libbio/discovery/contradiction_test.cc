@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <random>
+#include <vector>
 
 #include "bio/analysis/inverse_dynamics.h"
 #include "bio/analysis/replay.h"
+#include "bio/discovery/workflow.h"
 #include "bio/opensim/osim_file.h"
 #include "support/shipped_elbow.h"
 
@@ -179,6 +182,56 @@ TEST(InputAgreement, IsNotToldWithoutTheMotion) {
   Recordings recordings;
   recordings.trials.front().measured.clear();
   EXPECT_TRUE(std::isnan(recordings.agreement().correlation));
+}
+
+/// A curl with one flexor and one extensor, whose channels are exchanged.
+struct ExchangedCurl {
+  static constexpr const char* flexor = "BRA";
+  static constexpr const char* extensor = "TRIlat";
+
+  ExchangedCurl() {
+    std::erase_if(model.muscles, [](const Muscle& muscle) {
+      return muscle.name != flexor && muscle.name != extensor;
+    });
+    trial = readTrial(fixtures::ShippedElbow::root() + "/emg_data/curl_slow.sto", model,
+                      {.ignoreExtra = true});
+    const MusculoskeletalSystem system(model, fixtures::ShippedElbow::options());
+    SimulationOptions cvode;
+    cvode.integrator = Integrator::cvode;
+    const TrialReplay replay =
+        replayTrial(system, trial, cvode, beginningOf(trial, model, system, {}));
+    MeasuredChannel& measured = trial.measured.front();
+    const auto n = static_cast<Index>(replay.motion.time.size());
+    measured.times = Eigen::VectorXd::Map(replay.motion.time.data(), n);
+    measured.values = replay.motion.q.row(0).transpose();
+    std::mt19937_64 random(8);
+    std::normal_distribution<double> normal(0, 0.005);
+    for (double& angle : measured.values) angle += normal(random);
+    trial.excitations.col(0).swap(trial.excitations.col(1));
+  }
+
+  Model model = fixtures::ShippedElbow().model;
+  Trial trial;
+};
+
+// Without the exchange the excitations have nothing to do with the motion; with it they have.
+TEST(InputAgreement, DoesNotDoubtAnExchangeThatExplainsIt) {
+  const ExchangedCurl curl;
+  ASSERT_EQ(curl.trial.muscles.size(), 2u);
+  DiscoveryRequest request{curl.model,   fixtures::ShippedElbow::options(),
+                           "elbow_flexion", {curl.trial}, 0, {}, {}, {}, {}};
+  request.search.maxEffects = 1;
+  request.search.symbolic = false;
+  // what takes time
+  request.problem.without = {"limit", "limit_exp", "spring", "timed", "fatigue", "wraps"};
+  const DiscoveryResult result = discover(request);
+  EXPECT_LT(result.inputs.correlation, InputAgreement::unrelated);
+  EXPECT_THAT(result.inputs.remedies, IsEmpty());
+  const info::discover::Verdict& verdict = result.found.verdict;
+  ASSERT_EQ(verdict.effects.size(), 1u) << verdict.sentence;
+  EXPECT_EQ(result.data->candidates()[verdict.effects.front().candidate].id, "swap_TRIlat_BRA");
+  EXPECT_FALSE(verdict.vetoed) << verdict.sentence;
+  EXPECT_GT(verdict.probability, 0.9) << verdict.sentence;
 }
 
 }  // namespace

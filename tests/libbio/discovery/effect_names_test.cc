@@ -38,8 +38,8 @@ TEST(EffectNames, EveryLongNameOfTheElbowsCatalogueLeadsBackToItsId) {
 TEST(EffectNames, LeaveOutAnEffectOfTheCatalogue) {
   const bio::Model model = bio::fixtures::ShippedElbow().model;
   EXPECT_TRUE(encompassingModel(model, options, "elbow_flexion").knows("visc"));
-  EXPECT_FALSE(
-      encompassingModel(model, options, "elbow_flexion", {"viscous_damping"}).knows("visc"));
+  EXPECT_FALSE(encompassingModel(model, options, "elbow_flexion", {.without = {"viscous_damping"}})
+                   .knows("visc"));
 }
 
 }  // namespace

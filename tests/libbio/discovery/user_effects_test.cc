@@ -22,13 +22,13 @@ using testing::HasSubstr;
 const std::string example = std::string(FISHERHILL_SOURCE_DIR) + "/emg_data/effects.toml";
 
 TEST(UserEffects, AreReadFromTheShippedExample) {
-  const std::vector<UserEffect> all = readUserEffects(example);
+  const std::vector<UserEffect> all = readUserEffects({example});
   ASSERT_EQ(all.size(), 1u);
   const UserEffect& thinning = all.front();
   EXPECT_EQ(thinning.id, "thinning");
   EXPECT_EQ(thinning.name, "damping that thins");
   EXPECT_EQ(thinning.coordinate, "");
-  EXPECT_THAT(thinning.symbols, ElementsAre("c", "v"));
+  EXPECT_THAT(thinning.constants, ElementsAre("c", "v"));
   ASSERT_EQ(thinning.quantities.size(), 2u);
   EXPECT_EQ(thinning.quantities[0].name, "thinning.c");
   EXPECT_EQ(thinning.quantities[0].nominal, 0);
@@ -74,18 +74,18 @@ TEST(UserEffects, AreRefusedWithTheirKey) {
   const support::ScratchFolder folder;
   for (const auto& [text, words] : bad) {
     const std::string file = folder.file("bad.toml", text);
-    EXPECT_THAT(support::refusalIn<FileError>(folder.path(), [&] { readUserEffects(file); }),
+    EXPECT_THAT(support::refusalIn<FileError>(folder.path(), [&] { readUserEffects({file}); }),
                 HasSubstr(words))
         << text;
   }
-  EXPECT_NO_THROW(readUserEffects(folder.file("good.toml", both + with("lower", "0.5"))));
+  EXPECT_NO_THROW(readUserEffects({folder.file("good.toml", both + with("lower", "0.5"))}));
 }
 
 TEST(UserEffects, StandBesideTheCatalogueUnderTheirOwnNamesOnly) {
   const Model model = freePendulum(0.1);
   const SystemOptions system{{{"swing"}, {}}, {}, {}};
-  std::vector<UserEffect> own = readUserEffects(example);
-  const auto build = [&] { return encompassingModel(model, system, "swing", {}, {}, 0, {}, own); };
+  std::vector<UserEffect> own = readUserEffects({example});
+  const auto build = [&] { return encompassingModel(model, system, "swing", {.own = own}); };
   EXPECT_TRUE(build().knows("thinning"));
   EXPECT_EQ(build().candidates().size(),
             encompassingModel(model, system, "swing").candidates().size() + 1);
@@ -116,7 +116,7 @@ TEST(UserEffects, AreFoundAndWritten) {
       {},
       {},
       {"a test", {}}};
-  request.problem.own = readUserEffects(example);
+  request.problem.own = readUserEffects({example});
   const DiscoveryResult result = discover(request);
   const info::discover::Verdict& verdict = result.found.verdict;
   ASSERT_EQ(verdict.effects.size(), 1u) << verdict.sentence;
@@ -132,8 +132,8 @@ TEST(UserEffects, AreFoundAndWritten) {
   for (const RepairedTrial& trial : result.trials)
     EXPECT_NEAR(trial.after, trial.fitted, 1e-4) << trial.index;
   // in a model that has it, it is no candidate
-  EXPECT_EQ(encompassingModel(result.effectOnly->model, request.system, "swing", {}, {}, 0, {},
-                              request.problem.own)
+  EXPECT_EQ(encompassingModel(result.effectOnly->model, request.system, "swing",
+                              {.own = request.problem.own})
                 .present()
                 .count("thinning"),
             1u);

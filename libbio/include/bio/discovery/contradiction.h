@@ -27,9 +27,9 @@ struct InputAgreement {
   double correlation = NAN;
   /// Changes of the recording, each by itself, with which the correlation is large enough, as
   /// clauses ("the sign of elbow_flexion is reversed"), the best first; empty if there is none, or
-  /// if the correlation is not too small. Tried are: supplement and unit (degrees taken for radians)
-  /// of each angle, the sign of each angle and moment and of every two of them, a shift of the
-  /// excitations by 0.3 to 2 s, and excitations of another of the trials.
+  /// if the correlation is not too small. Tried are: supplement and unit (degrees taken for
+  /// radians) of each angle, the sign of each angle and moment and of every two of them, a shift of
+  /// the excitations by 0.3 to 2 s, and excitations of another of the trials.
   std::vector<std::string> remedies;
   double remedied = NAN;  ///< correlation with the first of them
 };

@@ -78,18 +78,21 @@ std::vector<std::string> unsaturated(const EncompassingModel& model,
 std::vector<std::string> withoutElectrode(const EncompassingModel& model,
                                           const std::vector<std::string>& silent);
 
-/// addNuisances, and every entry but those whose ids are in `without`.
-/// @param without  ids of entries or of candidates, or their long names (effect_names.h)
-/// @param formula  if not empty, also addFormula of it, on the coordinate `axis`
-/// @param sensors  what is measured; empty: the coordinates
-/// @param own      effects beside those of the catalogue
+/// What of the catalogue a model gets, and what beside it.
+struct CatalogueChoice {
+  /// Ids to exclude, of entries or of candidates, or their long names (effect_names.h).
+  std::vector<std::string> without = {};
+  std::vector<UserEffect> own = {};                       ///< effects beside those of the catalogue
+  std::vector<info::discover::FormulaTerm> formula = {};  ///< of a candidate "formula"; empty: none
+  std::size_t formulaAxis = 0;                            ///< the coordinate that it acts on
+  std::vector<Observable> sensors = {};  ///< what is measured; empty: the coordinates
+};
+
+/// addNuisances, and the entries of the choice; with a formula also addFormula.
 /// @throws std::invalid_argument for an unknown id, with a list of the known ones; for an effect of
 ///   `own` with an id of the catalogue or of another, or on a coordinate that is not in question
 EncompassingModel encompassingModel(const Model& model, const SystemOptions& system,
                                     const CoordinateNames& coordinates,
-                                    const std::vector<std::string>& without = {},
-                                    const std::vector<info::discover::FormulaTerm>& formula = {},
-                                    std::size_t axis = 0, std::vector<Observable> sensors = {},
-                                    const std::vector<UserEffect>& own = {});
+                                    const CatalogueChoice& choice = {});
 
 }  // namespace bio::discover

@@ -123,9 +123,7 @@ void addUserEffect(EncompassingModel& model, const UserEffect& effect) {
     if (isTaken)
       throw std::invalid_argument(fmt::format(
           "{}: id = \"{}\", there is another effect of this name", effect.file, effect.id));
-    addExpression(model, at,
-                  {effect.id, effect.name, effect.sentence, effect.expression, effect.symbols,
-                   effect.quantities, effect.starts});
+    addExpression(model, at, effect);
   }
   if (isThere) return;
   throw std::invalid_argument(fmt::format("{}: coordinate = \"{}\", which is not in question",
@@ -136,12 +134,9 @@ void addUserEffect(EncompassingModel& model, const UserEffect& effect) {
 
 EncompassingModel encompassingModel(const Model& model, const SystemOptions& system,
                                     const CoordinateNames& coordinates,
-                                    const std::vector<std::string>& leftOut,
-                                    const std::vector<info::discover::FormulaTerm>& formula,
-                                    std::size_t axis, std::vector<Observable> sensors,
-                                    const std::vector<UserEffect>& own) {
-  const std::vector<std::string> without = effectIds(leftOut);
-  EncompassingModel encompassing(model, system, coordinates, std::move(sensors));
+                                    const CatalogueChoice& choice) {
+  const std::vector<std::string> without = effectIds(choice.without);
+  EncompassingModel encompassing(model, system, coordinates, choice.sensors);
   addNuisances(encompassing);
   addExperimentalConditions(encompassing);
   for (const EffectEntry& entry : effectEntries()) {
@@ -155,10 +150,11 @@ EncompassingModel encompassingModel(const Model& model, const SystemOptions& sys
       for (std::size_t i = 0; i < encompassing.sensors().size(); ++i) (*ofSensor)(encompassing, i);
     }
   }
-  for (const UserEffect& effect : own) addUserEffect(encompassing, effect);
+  for (const UserEffect& effect : choice.own) addUserEffect(encompassing, effect);
   mustBeKnown(encompassing, without);
   encompassing.forget(without);
-  if (!formula.empty()) addFormula(encompassing, encompassing.coordinates().at(axis), formula);
+  if (!choice.formula.empty())
+    addFormula(encompassing, encompassing.coordinates().at(choice.formulaAxis), choice.formula);
   return encompassing;
 }
 

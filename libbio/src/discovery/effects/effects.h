@@ -70,15 +70,7 @@ inline std::string gainId(const std::string& name) {
 /// Name of the law that an effect adds to a model: "elbow_flexion_visc".
 std::string lawName(const MovingCoordinate& at, const std::string& id);
 
-/// Adds a force on a coordinate, given as an expression in q, qdot and its quantities (by the names
-/// of `constants`). Present if the model has a law of that name.
-struct ExpressionEffect {
-  std::string id, name, sentence, expression;
-  std::vector<std::string> constants;
-  std::vector<info::discover::Quantity> quantities;
-  std::vector<std::vector<double>> starts;
-  std::vector<std::string> equivalents = {};
-};
+/// Adds a force on a coordinate by a formula. Present if the model has a law of that name.
 /// @return the law's index in the model's list; nothing if it is present
 std::optional<std::size_t> addExpression(EncompassingModel& model, const MovingCoordinate& at,
                                          const ExpressionEffect& effect);

@@ -192,14 +192,13 @@ struct Verdict {
   double probability = 0;            ///< of all effects together; 0 if none is given
   /// Effects are named, but without a probability: the innovations have the wrong size, the errors
   /// of the held-out trials are improbably large (Options::farOff), no agreement with them would
-  /// confirm anything (Options::vague), what is left is not noise (reserved), or these trials show
+  /// confirm anything (Options::vague), what is left is not noise (remainder), or these trials show
   /// the effects only with parameters of their own (Replication).
   bool vetoed = false;
-  /// The effects are named because they carry over to the held-out trials (Options::carriesOver),
-  /// though the residual of the fitted trials is not noise.
-  bool reserved = false;
-  double remainingForce = NAN;  ///< then: its root mean square [unit of remainingAxis's force]
-  std::size_t remainingAxis = 0;
+  /// Where effects are named because they carry over to the held-out trials
+  /// (Options::carriesOver), though the residual of the fitted trials is not noise: the force that
+  /// is left.
+  std::optional<RemainingForce> remainder;
   bool surrogate = false;  ///< finding unknown: `effects` is only a proxy for the missing effect
   /// Nothing was found without the held-out trials, although their errors were too large. All
   /// trials were therefore fitted, and none is left for validation (Options::secondLook).

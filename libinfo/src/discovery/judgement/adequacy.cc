@@ -43,6 +43,11 @@ double chiSquareQuantile(double probability, double n) {
   return 0.5 * (low + high);
 }
 
+HeldOutAdequacy heldOutAdequacy(double meanSquare, Index samples, const AdequacyOptions& options) {
+  const auto n = static_cast<double>(samples);
+  return {meanSquare, chiSquareQuantile(options.level, n) / n * std::exp(3.29 * options.sdError)};
+}
+
 Adequacy adequacy(const Likelihood& likelihood, const Fit& fit, const AdequacyOptions& options) {
   const DiscoveryProblem& data = likelihood.data();
   std::vector<VectorXd> series;

@@ -46,6 +46,15 @@ MatrixXd NodeStates::placed(std::size_t trial, std::size_t axis, const MatrixXd&
   return all;
 }
 
+double rootMeanSquare(const std::vector<VectorXd>& parts) {
+  double squares = 0, count = 0;
+  for (const VectorXd& part : parts) {
+    squares += part.squaredNorm();
+    count += static_cast<double>(part.size());
+  }
+  return std::sqrt(squares / count);
+}
+
 NodeStates statesAtNodes(const Likelihood& likelihood, const Fit& fit) {
   const DiscoveryProblem& data = likelihood.data();
   NodeStates states;

@@ -29,6 +29,9 @@ struct NodeStates {
   Eigen::MatrixXd placed(std::size_t trial, std::size_t axis, const Eigen::MatrixXd& forces) const;
 };
 
+/// Over the entries of all parts.
+double rootMeanSquare(const std::vector<Eigen::VectorXd>& parts);
+
 NodeStates statesAtNodes(const Likelihood& likelihood, const Fit& fit);
 
 }  // namespace info::discover

@@ -198,7 +198,7 @@ RecordedNoise recordedNoise(const DiscoveryProblem& data, const std::vector<int>
   const double quantum = quantumOf(selected, trials);
   if (const double found = noise.sd.value.sd(0); quantum > found) {
     noise.quantum = quantum;
-    noise.sd.value = std::max(found, quantum / std::sqrt(12.0));
+    noise.sd.value = std::max(found, noise.leastSd());
   }
 
   const auto left = residuals(selected, trials, noise.sd.value.sd(0));
@@ -222,7 +222,7 @@ RecordedNoise recordedNoise(const DiscoveryProblem& data, const std::vector<int>
   if (m == 1) return noise;
   noise.spacing = m;
   noise.interval = m * step;
-  noise.sd.value = std::max(sd(m), noise.quantum / std::sqrt(12.0));
+  noise.sd.value = std::max(sd(m), noise.leastSd());
   noise.sd.relativeError =
       std::sqrt(2 * (1 + 2 * 262.0 / 400.0) * m / differences[static_cast<std::size_t>(m)].count);
   for (auto& one : kept) {

@@ -31,15 +31,6 @@ struct Family {
   std::vector<StateForce> terms;
 };
 
-double rootMeanSquare(const std::vector<VectorXd>& parts) {
-  double squares = 0, count = 0;
-  for (const VectorXd& part : parts) {
-    squares += part.squaredNorm();
-    count += static_cast<double>(part.size());
-  }
-  return std::sqrt(squares / count);
-}
-
 // (q − middle)/half to the powers 0 … 5
 Family elastic(const NodeStates& states, std::size_t axis) {
   double low = HUGE_VAL, high = -HUGE_VAL;

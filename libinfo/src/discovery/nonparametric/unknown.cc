@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "discovery/judgement/node_states.h"
 #include "discovery/nonparametric/symbolic.h"
 
 namespace info::discover {
@@ -26,15 +27,6 @@ std::size_t strongestAxis(const Likelihood& likelihood, const Fit& fit) {
   Index strongest = 0;
   evidence.maxCoeff(&strongest);
   return static_cast<std::size_t>(strongest);
-}
-
-double sizeOf(const std::vector<VectorXd>& forces) {
-  double power = 0, count = 0;
-  for (const VectorXd& d : forces) {
-    power += d.squaredNorm();
-    count += static_cast<double>(d.size());
-  }
-  return std::sqrt(power / count);
 }
 
 std::vector<VectorXd> forcesOn(std::size_t axis, const Likelihood& likelihood, const Fit& fit) {
@@ -81,14 +73,14 @@ void spectrum(const Likelihood& likelihood, const Fit& fit,
       near += density[i];
   }
   unknown.peakShare = total > 0 ? near / total : 0;
-  unknown.forceSize = sizeOf(forces);
+  unknown.forceSize = rootMeanSquare(forces);
 }
 
 }  // namespace
 
-std::pair<std::size_t, double> strongestForce(const Likelihood& likelihood, const Fit& fit) {
+RemainingForce strongestForce(const Likelihood& likelihood, const Fit& fit) {
   const std::size_t axis = strongestAxis(likelihood, fit);
-  return {axis, sizeOf(forcesOn(axis, likelihood, fit))};
+  return {axis, rootMeanSquare(forcesOn(axis, likelihood, fit))};
 }
 
 Unknown describeUnknown(const Likelihood& likelihood, const Fit& fit) {

@@ -32,6 +32,7 @@ struct SearchMemory {
   Effects chosen;               ///< the chosen effects
   Eigen::VectorXd scaleValues;  ///< values at which the scale of the latent force was evaluated
   bool racedFromNominal = false;
+  double noiseReduced = 1;  ///< RecordedNoise::reduced, with which it searched
 };
 
 /// η of the same latent force for another σ_d.

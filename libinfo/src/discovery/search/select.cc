@@ -1,6 +1,7 @@
 #include "discovery/search/select.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace info::discover {
 namespace {
@@ -117,18 +118,22 @@ class Selection {
     return false;
   }
 
+  // Whether a hypothesis was fitted, or is now, from the one without its effect `last`.
+  bool mayBeFitted(const Effects& effects, std::size_t last) {
+    if (search_.entries().count(effects) > 0) return true;
+    const Effects fewer = without(effects, last);
+    if (search_.entries().count(fewer) == 0) return false;
+    search_.race(fewer, {last});
+    return true;
+  }
+
   // With two effects or more, each may be a proxy of another one.
   bool swapOne() {
     if (chosen_.size() < 2) return false;
     const Effects now = chosen_;
     for (const std::size_t effect : now) {
       const Effects rest = without(now, effect);
-      if (search_.entries().count(rest) == 0) {
-        const Effects fewer = without(rest, rest.back());
-        if (search_.entries().count(fewer) == 0) continue;
-        search_.race(fewer, {rest.back()});
-      }
-      search_.race(rest, search_.shortlist(rest, kRivals));
+      if (mayBeFitted(rest, rest.back())) search_.race(rest, search_.shortlist(rest, kRivals));
     }
     search_.enforceNesting();
     chosen_ = best();
@@ -147,11 +152,7 @@ class Selection {
           for (const std::size_t other : rivalsOf(now, now[k])) {
             const Effects first = with(rest, rival);
             if (rival == other || search_.entries().count(with(first, other)) > 0) continue;
-            if (search_.entries().count(first) == 0) {
-              if (search_.entries().count(rest) == 0) continue;
-              search_.race(rest, {rival});
-            }
-            search_.race(first, {other});
+            if (mayBeFitted(first, rival)) search_.race(first, {other});
           }
       }
     search_.enforceNesting();
@@ -180,24 +181,18 @@ class Selection {
   bool swapBeside(const std::vector<std::size_t>& list) {
     const Effects now = chosen_;
     if (now.empty() || static_cast<int>(now.size()) >= options_.maxEffects) return false;
-    std::size_t newcomer = 0;
+    std::optional<std::size_t> newcomer;
     double most = search_.at(now).score + kAlmost * options_.evidence;
-    bool isThere = false;
-    for (const std::size_t one : list) {
-      const auto both = search_.entries().find(with(now, one));
+    for (const std::size_t candidate : list) {
+      const auto both = search_.entries().find(with(now, candidate));
       if (both == search_.entries().end() || !(both->second.score > most)) continue;
       most = both->second.score;
-      newcomer = one;
-      isThere = true;
+      newcomer = candidate;
     }
-    if (!isThere) return false;
+    if (!newcomer) return false;
     for (const std::size_t old : now) {
-      const Effects others = without(now, old), rest = with(others, newcomer);
-      if (search_.entries().count(rest) == 0) {
-        if (search_.entries().count(others) == 0) continue;
-        search_.race(others, {newcomer});
-      }
-      search_.race(rest, search_.shortlist(rest, kRivals));
+      const Effects rest = with(without(now, old), *newcomer);
+      if (mayBeFitted(rest, *newcomer)) search_.race(rest, search_.shortlist(rest, kRivals));
     }
     search_.enforceNesting();
     chosen_ = best();

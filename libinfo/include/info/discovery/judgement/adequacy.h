@@ -42,6 +42,10 @@ struct AdequacyOptions {
   double sdError = 0;   ///< relative standard error of an estimated σ_y: widens
 };
 
+/// With the region in which the mean square of so many samples lies at AdequacyOptions::level.
+HeldOutAdequacy heldOutAdequacy(double meanSquare, Eigen::Index samples,
+                                const AdequacyOptions& options);
+
 /// Tests the whitened innovations of a fit: their size (χ²), their autocorrelation (Ljung and Box,
 /// lags pooled over trials, corrected for the effect of fitted parameters on white noise), their
 /// correlation with each input 0 to 0.2 s earlier, and whether the residual disturbance follows a

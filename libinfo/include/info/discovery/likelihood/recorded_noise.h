@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -21,6 +22,13 @@ struct RecordedNoise {
   std::vector<std::vector<std::size_t>> kept;  ///< indices of the samples to use, by trial
   /// Whether every sample is used.
   bool usesAll() const { return outliers == 0 && spacing == 1; }
+  /// Error of quantisation, below which no σ_y is estimated: quantum/√12.
+  double leastSd() const { return quantum / std::sqrt(12.0); }
+  /// Reduces σ_y by a factor.
+  void reduce(double factor) {
+    sd.value = sd.value.scaled(factor);
+    reduced *= factor;
+  }
 };
 
 /// Outliers are samples more than 8 robust standard deviations off the parabola through their

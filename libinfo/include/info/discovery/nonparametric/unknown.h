@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "info/discovery/likelihood/joint_fit.h"
@@ -46,9 +45,12 @@ struct Unknown {
   std::string formula;   ///< e.g. "−0.42·q̇|q̇| + 0.1·q"
 };
 
-/// The axis of the most certain latent force, as Unknown::axis, and the root mean square of its
-/// force over all nodes [unit of the generalised force].
-std::pair<std::size_t, double> strongestForce(const Likelihood& likelihood, const Fit& fit);
+/// The latent force of a fit on the axis of Unknown::axis.
+struct RemainingForce {
+  std::size_t axis = 0;
+  double size = 0;  ///< root mean square over all nodes [unit of the generalised force]
+};
+RemainingForce strongestForce(const Likelihood& likelihood, const Fit& fit);
 
 /// @param fit of the base model with a latent force of the estimated size
 Unknown describeUnknown(const Likelihood& likelihood, const Fit& fit);
