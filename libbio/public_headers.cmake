@@ -42,6 +42,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/discovery/effects.h
   include/bio/discovery/end_of_limb.h
   include/bio/discovery/encompassing_model.h
+  include/bio/discovery/motion_size.h
   include/bio/discovery/musculoskeletal_problem.h
   include/bio/discovery/passive_motion.h
   include/bio/discovery/planned_experiments.h

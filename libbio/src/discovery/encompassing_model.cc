@@ -57,6 +57,20 @@ std::string EncompassingModel::idOf(std::size_t sensor, const std::string& id) c
   return sensors_.size() == 1 ? id : nameOf(sensors_.at(sensor)) + "." + id;
 }
 
+void EncompassingModel::setMotions(const std::map<std::string, MotionSize>& motions) {
+  for (MovingCoordinate& at : coordinates_) {
+    const auto seen = motions.find(at.coordinate.name);
+    at.seen = seen == motions.end() ? MotionSize{} : seen->second;
+  }
+}
+
+std::map<std::string, MotionSize> EncompassingModel::motions() const {
+  std::map<std::string, MotionSize> motions;
+  for (const MovingCoordinate& at : coordinates_)
+    if (at.seen.speed > 0) motions[at.coordinate.name] = at.seen;
+  return motions;
+}
+
 bool EncompassingModel::knows(const std::string& id) const {
   return std::any_of(candidates_.begin(), candidates_.end(), [&](const Candidate& candidate) {
     return candidate.id == id || candidate.id.ends_with("." + id);

@@ -104,10 +104,11 @@ std::vector<std::string> coordinatesInQuestion(const std::vector<std::string>& f
 
 namespace {
 
-/// With what the trials measure as outputs, unless some are chosen.
+/// With what the trials measure as outputs, and how they saw it move, unless that is chosen.
 CatalogueChoice withOutputs(CatalogueChoice choice, const std::vector<Trial>& trials,
                             const SystemOptions& system, const CoordinateNames& coordinates) {
   if (choice.sensors.empty()) choice.sensors = measuredOutputs(trials, system, coordinates.all);
+  if (choice.motions.empty()) choice.motions = motionSizes(trials, coordinates.all);
   return choice;
 }
 
@@ -225,7 +226,8 @@ void MusculoskeletalProblem::addStarts(OfTrial& trial) {
     if (encompassing_.system().isPrescribed(coordinates[i].index)) continue;
     const Coordinate& observed = coordinates[i].coordinate;
     const bool turns = observed.isRotation;
-    const double length = turns ? 1 : 0.125;  // [m] that stand for 1 rad
+    const CoordinateUnits units = unitsOf(encompassing_, coordinates[i]);
+    const double length = units.length;
     const Observable what = ofCoordinate(observed.name);
     const auto& sensors = encompassing_.sensors();
     const auto sensor = std::find(sensors.begin(), sensors.end(), what);
@@ -237,14 +239,14 @@ void MusculoskeletalProblem::addStarts(OfTrial& trial) {
       const std::vector<double> times(channel->times.begin(), channel->times.end());
       shown = std::abs(initialSpeedShown(times, channel->values, 0.3 * length));
     }
-    const double fastest = std::max(turns ? 10.0 : 2.0, 3 * shown);
+    const double fastest = std::max((turns ? 10 : 16) * units.speedSize, 3 * shown);
     const double first = isMeasured ? channel->values[0] : observed.defaultValue;
     start.angle = addOwnQuantity(
         observed.name, {"", turns ? "rad" : "m", first, observed.rangeMin, observed.rangeMax,
                         (isMeasured ? 1 : 10) * options_.startSd * length, false});
     start.speed = addOwnQuantity(observed.name + ".speed",
                                  {"", turns ? "rad/s" : "m/s", 0, -fastest, fastest,
-                                  std::max(options_.speedSd * length, shown), false});
+                                  std::max(options_.speedSd * units.speedSize, shown), false});
     trial.starts.push_back(start);
   }
 }
@@ -329,6 +331,7 @@ std::unique_ptr<info::discover::DiscoveryProblem> MusculoskeletalProblem::withFo
   options.formula = terms;
   options.formulaAxis = axis;
   options.sensors = encompassing_.sensors();
+  options.motions = encompassing_.motions();
   for (std::size_t c = 0; c < candidates().size(); ++c) {
     if (std::find(kept.begin(), kept.end(), c) == kept.end())
       options.without.push_back(candidates()[c].id);

@@ -249,6 +249,7 @@ DiscoveryResult discover(const DiscoveryRequest& request) {
     MusculoskeletalProblemOptions options = request.problem;
     options.simulation.step = data.options().simulation.step;
     options.sensors = data.encompassing().sensors();
+    options.motions = data.encompassing().motions();
     result.experiments =
         predictExperiments(request.model, request.system, data.trial(0), options, data, verdict);
   }

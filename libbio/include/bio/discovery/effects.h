@@ -30,8 +30,8 @@ struct EffectEntry {
 /// | id | effect | amplitude |
 /// |---|---|---|
 /// | visc | −b·w | b N·m·s/rad |
-/// | coulomb | −c·tanh(w/0.05) | c N·m |
-/// | stribeck | −c·[1 + e^{−(w/v)²}]·tanh(w/0.05) | c N·m |
+/// | coulomb | −c·tanh(w/0.05); without muscles w/v, v about 1/80 of the RMS speed | c N·m |
+/// | stribeck | −c·[1 + e^{−(w/v)²}]·tanh(w/0.05); without muscles w over that 1/80 | c N·m |
 /// | drag | −c·w·|w| | c N·m·s² |
 /// | powerdamp | −b·w·(w² + 0.01²)^{(n−1)/2} | b |
 /// | stiffness | −k(q − q_r) | k N·m/rad |
@@ -86,6 +86,9 @@ struct CatalogueChoice {
   std::vector<info::discover::FormulaTerm> formula = {};  ///< of a candidate "formula"; empty: none
   std::size_t formulaAxis = 0;                            ///< the coordinate that it acts on
   std::vector<Observable> sensors = {};  ///< what is measured; empty: the coordinates
+  /// How the coordinates move, which sizes the effects of a model without muscles; empty: as an
+  /// elbow does.
+  std::map<std::string, MotionSize> motions = {};
 };
 
 /// addNuisances, and the entries of the choice; with a formula also addFormula.

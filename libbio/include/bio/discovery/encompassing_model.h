@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bio/discovery/motion_size.h"
 #include "bio/discovery/sensor_law.h"
 #include "bio/discovery/timed_force.h"
 #include "bio/parameters/parameters.h"
@@ -60,6 +61,7 @@ struct MovingCoordinate {
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
   /// Σ m·|∂(mass centre)/∂q| over these bodies at mid-range [kg m]; [kg] if it slides.
   double massMoment = 0;
+  MotionSize seen = {};  ///< as measured; zeros where it is not
 
   double middle() const { return (coordinate.rangeMin + coordinate.rangeMax) / 2; }
 };
@@ -106,6 +108,7 @@ class EncompassingModel {
   const SystemOptions& systemOptions() const { return systemOptions_; }
   const std::vector<MovingCoordinate>& coordinates() const { return coordinates_; }
   std::vector<std::string> coordinateNames() const;
+  std::map<std::string, MotionSize> motions() const;  ///< of setMotions
   /// Whether there is one coordinate, whose effects have short ids.
   bool hasOneCoordinate() const { return coordinates_.size() == 1; }
   /// The first coordinate, which is the only one where the model has one.
@@ -143,6 +146,8 @@ class EncompassingModel {
   void extend(std::size_t quantity, Meaning::Part part) {
     meanings_.at(quantity).parts.push_back(part);
   }
+  /// How the trials saw the coordinates move (motionSizes).
+  void setMotions(const std::map<std::string, MotionSize>& motions);
   void setConditions(const ConditionQuantities& conditions) { conditions_ = conditions; }
   void addNuisance(std::size_t quantity) { nuisances_.push_back(quantity); }
   void add(Candidate candidate) { candidates_.push_back(std::move(candidate)); }

@@ -137,6 +137,7 @@ EncompassingModel encompassingModel(const Model& model, const SystemOptions& sys
                                     const CatalogueChoice& choice) {
   const std::vector<std::string> without = effectIds(choice.without);
   EncompassingModel encompassing(model, system, coordinates, choice.sensors);
+  encompassing.setMotions(choice.motions);
   addNuisances(encompassing);
   addExperimentalConditions(encompassing);
   for (const EffectEntry& entry : effectEntries()) {
@@ -203,13 +204,29 @@ std::string placeOfMass(const EncompassingModel& model) {
   return (end == "the hand" ? "in " : "on ") + end;
 }
 
+namespace {
+
+/// To three digits, which is how a formula tells it.
+double roundedSize(double size) {
+  return std::stod(fmt::format("{:.2e}", size));
+}
+
+}  // namespace
+
 CoordinateUnits unitsOf(const EncompassingModel& model, const MovingCoordinate& at) {
   const bool turns = at.coordinate.isRotation;
-  CoordinateUnits units = turns ? CoordinateUnits{"rad", "rad/s", "N m", "torque"}
-                                : CoordinateUnits{"m", "m/s", "N", "force", 0.125};
+  CoordinateUnits units =
+      turns ? CoordinateUnits{"rad", "rad/s", "N m", "torque"}
+            : CoordinateUnits{"m", "m/s", "N", "force", 0.125, 0.125, 0.05 * 0.125};
   if (model.system().numMuscles() == 0) {
-    constexpr double gravity = 9.81, forearm = 4, cart = 16;  // [N m] and [N] that count as 1
+    constexpr double forearm = 4, cart = 16;  // [N m] and [N] that count as 1
+    const double pull = model.base().gravity.norm(), gravity = pull > 0 ? pull : 9.81;
+    constexpr double dry = 1.0 / 80;  // of the speed that was seen
     if (at.massMoment > 0) units.strength = gravity * at.massMoment / (turns ? forearm : cart);
+    if (at.seen.speed == 0) return units;
+    units.speedSize = roundedSize(at.seen.speed);
+    units.frictionWidth = roundedSize(dry * at.seen.speed);
+    if (!turns) units.length = roundedSize(at.seen.spread);
     return units;
   }
   if (turns) return units;

@@ -30,7 +30,7 @@ void addViscousDamping(EncompassingModel& model, const MovingCoordinate& at) {
     return model.addPresent(model.idAt(at, "visc"), damper);
   }
   const CoordinateUnits units = unitsOf(model, at);
-  const double size = units.strength / units.length;
+  const double size = units.strength / units.speedSize;
   const std::size_t law =
       model.addLaw(SpringGeneralizedForce{lawName(at, "visc"), at.coordinate.name});
   const std::size_t b = model.add(
@@ -45,28 +45,35 @@ void addViscousDamping(EncompassingModel& model, const MovingCoordinate& at) {
 
 void addCoulombFriction(EncompassingModel& model, const MovingCoordinate& at) {
   const CoordinateUnits units = unitsOf(model, at);
-  const double size = units.strength;
-  addExpression(
-      model, at,
-      {"coulomb",
-       "Coulomb friction",
-       fmt::format("The joint resists its motion with a constant {} at any speed.", units.word),
-       fmt::format("-c*tanh(qdot/{})", 0.05 * units.length),
-       {"c"},
-       {amplitude("coulomb." + units.word, units.force, 0, 3 * size, 0.6 * size)},
-       {{0.2 * size}}});
+  const double size = units.strength, width = units.frictionWidth;
+  ExpressionEffect effect{
+      "coulomb",
+      "Coulomb friction",
+      fmt::format("The joint resists its motion with a constant {} at any speed.", units.word),
+      fmt::format("-c*tanh(qdot/{})", width),
+      {"c"},
+      {amplitude("coulomb." + units.word, units.force, 0, 3 * size, 0.6 * size)},
+      {{0.2 * size}}};
+  if (model.system().numMuscles() == 0) {  // what sticks creeps at such a speed
+    effect.expression = "-c*tanh(qdot/w)";
+    effect.constants.emplace_back("w");
+    effect.quantities.push_back(
+        shape("coulomb.speed", units.speed, width, width / 5, 5 * width, 0.5 * width));
+    effect.starts.front().push_back(width);
+  }
+  addExpression(model, at, effect);
 }
 
 void addStribeckFriction(EncompassingModel& model, const MovingCoordinate& at) {
   const CoordinateUnits units = unitsOf(model, at);
-  const double size = units.strength, speed = units.length;
+  const double size = units.strength, speed = units.speedSize;
   addExpression(
       model, at,
       {"stribeck",
        "Stribeck friction",
        fmt::format("The joint resists its motion with a {} that is twice as large near rest.",
                    units.word),
-       fmt::format("-c*(1+exp(-(qdot/v)^2))*tanh(qdot/{})", 0.05 * speed),
+       fmt::format("-c*(1+exp(-(qdot/v)^2))*tanh(qdot/{})", units.frictionWidth),
        {"c", "v"},
        {amplitude("stribeck." + units.word, units.force, 0, 3 * size, 0.6 * size),
         shape("stribeck.speed", units.speed, 0.3 * speed, 0.1 * speed, 1 * speed, 0.15 * speed)},
@@ -75,7 +82,7 @@ void addStribeckFriction(EncompassingModel& model, const MovingCoordinate& at) {
 
 void addQuadraticDrag(EncompassingModel& model, const MovingCoordinate& at) {
   const CoordinateUnits units = unitsOf(model, at);
-  const double size = units.strength / (units.length * units.length);
+  const double size = units.strength / (units.speedSize * units.speedSize);
   addExpression(
       model, at,
       {"drag",
@@ -90,15 +97,16 @@ void addQuadraticDrag(EncompassingModel& model, const MovingCoordinate& at) {
 
 void addPowerDamping(EncompassingModel& model, const MovingCoordinate& at) {
   const CoordinateUnits units = unitsOf(model, at);
-  // b |q̇|^n at n = 1/2 is as large as a rotation's where q̇ is `length` times its speed
-  const double size = units.strength * (units.position == "rad" ? 1 : std::exp2(1.5));
+  // b |q̇|^n at n = 1/2 is as large as an elbow's where q̇ is `speedSize` times its speed
+  const double size = units.strength / std::sqrt(units.speedSize);
   addExpression(
       model, at,
       {"powerdamp",
        "sub-linear damping",
        "The joint resists its motion with a power of the speed between 0 "
        "(constant) and 1 (proportional).",
-       fmt::format("-b*qdot*exp((n-1)/2*log(qdot^2+{}))", 0.0001 * units.length * units.length),
+       fmt::format("-b*qdot*exp((n-1)/2*log(qdot^2+{}))",
+                   0.0001 * units.speedSize * units.speedSize),
        {"b", "n"},
        {amplitude("powerdamp." + units.word, fmt::format("{} at 1 {}", units.force, units.speed), 0,
                   3 * size, 0.3 * size),

@@ -15,11 +15,14 @@ void addExperimentalConditions(EncompassingModel& model);
 void addHandForce(EncompassingModel& model);
 
 /// Units, words and sizes of a coordinate and of a force on it. Priors and bounds of the catalogue
-/// are those of an elbow, in N m and rad; a shift's are these times powers of two.
+/// are those of an elbow, in N m and rad; a shift's are these times powers of two; without muscles
+/// they follow from what moves and how it was seen to move (decision 085).
 struct CoordinateUnits {
   std::string position, speed, force;  ///< "rad", "rad/s", "N m"; "m", "m/s", "N"
   std::string word;                    ///< "torque" or "force"
-  double length = 1;                   ///< 1/8 m stands for 1 rad
+  double length = 1;            ///< 1/8 m stands for 1 rad, or, without muscles, the spread seen
+  double speedSize = 1;         ///< that stands for 1 rad/s: without muscles, the speed seen
+  double frictionWidth = 0.05;  ///< dry friction is c·tanh(q̇/w); without muscles 1/80 of that
   /// Size of a force. With muscles 1 for a rotation, for a shift the strongest isometric force of
   /// the muscles in one direction, over 64 [N]. Without muscles what moves weighs, over 4 N m or
   /// 16 N: a free swing is the same for any mass, and so is what can be said of it.

@@ -281,6 +281,21 @@ SensorSizes sizesOf(const Observable& what, const std::string& unit) {
   return angle;  // an activation
 }
 
+/// By what a model without muscles is larger than an elbow, in the unit of what is measured.
+double largerThanAnElbow(const EncompassingModel& model, const Observable& what) {
+  using Kind = Observable::Kind;
+  if (model.system().numMuscles() > 0) return 1;
+  for (const MovingCoordinate& at : model.coordinates()) {
+    if (at.coordinate.name != what.object) continue;
+    const CoordinateUnits units = unitsOf(model, at);
+    const double shift = at.coordinate.isRotation ? 1 : 0.125;  // [m] that stand for 1 rad
+    if (what.kind == Kind::coordinate) return units.length / shift;
+    if (what.kind == Kind::speed) return units.speedSize / shift;
+    if (what.kind == Kind::moment) return units.strength;
+  }
+  return 1;
+}
+
 }  // namespace
 
 void addSensorErrors(EncompassingModel& model, std::size_t sensor) {
@@ -301,7 +316,7 @@ void addSensorErrors(EncompassingModel& model, std::size_t sensor) {
     model.add(candidate(model, full, std::move(name), std::move(sentence), EffectKind::sensor, {x},
                         {{start}}, std::move(equivalents)));
   };
-  const SensorSizes sizes = sizesOf(what, unit);
+  const SensorSizes sizes = sizesOf(what, unit).scaled(largerThanAnElbow(model, what));
   const std::string thing = what.isCoordinate() ? "coordinate" : "true value";
   add("bias", "sensor bias", "The sensor's reading is off by a constant.", unit, sizes.biasBound,
       sizes.biasSd, sizes.biasStart, Meaning::Kind::bias);
