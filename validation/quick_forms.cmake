@@ -37,6 +37,8 @@ fisherhill_quick_family(Torque torque 101)
 fisherhill_quick(ScaledTwins ${python} validation/discovery/twins/scaled_twins.py --build ${PROJECT_BINARY_DIR}
   --only slide:const --only pendulum:drag ${quick}/twins)
 set_tests_properties(Quick.ScaledTwins PROPERTIES PASS_REGULAR_EXPRESSION "2 of 2 pairs have the same verdict; the hidden effect is in the class of 2")
+fisherhill_quick(OwnEffects ${python} validation/discovery/own/own_effects.py --build ${PROJECT_BINARY_DIR} --sets 1 ${quick}/own)
+set_tests_properties(Quick.OwnEffects PROPERTIES PASS_REGULAR_EXPRESSION "own: 1 of 1 first")
 find_program(mpirun mpirun)
 if(mpirun AND TARGET fisherhill-mpi)
   fisherhill_quick(KillRanks validation/robustness/kill_ranks ${program} 1 1)

@@ -118,6 +118,12 @@ std::string verdictOf(const DesignFindings& f) {
         stopped, f.trialFile);
   }
   const double before = f.result.before.bound[0], after = f.result.after.bound[0];
+  if (!std::isfinite(before)) {
+    return fmt::format(
+        "{}The designed experiment determines {} to ±{} {} (Cramér–Rao bound), which {} does not "
+        "determine at all.",
+        stopped, f.parameters[0].name, numberText(after, 3), f.parameters[0].unit, f.trialFile);
+  }
   return fmt::format(
       "{}The designed experiment determines {} to ±{} {} instead of ±{} {} (Cramér–Rao bound), {} "
       "times better with the same duration, rate and noise.",

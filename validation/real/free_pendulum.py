@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Real pendulums of one, two or three arms that swing freely: what does the authors' model lack?
 
-    python3 validation/real/free_pendulum.py [--arms 1] [--build build/program] [--step 0.001] [--seconds S] [--heavier 1] [--fit id_1 id_3] [--hold-out val_1] [--baseline] RECORDINGS FOLDER
+    python3 validation/real/free_pendulum.py [--arms 1] [--build build/program] [--step 0.001] [--seconds S] [--heavier 1] [--fit id_1 id_3] [--hold-out val_1] [--noise-deg D] [--baseline] RECORDINGS FOLDER
 
 RECORDINGS: single_id_1.csv, double_id_1.csv … of the MultiArm-Pendulum of the University of Washington (github.com/dynamicslab/MultiArm-Pendulum, MIT licence), columns time and
 phi1_rad, … with 0 upwards, each from the vertical. The model is the authors' without its friction: masses, their centres, inertias and lengths that they estimated. Used are 100 rows per second of one
@@ -66,6 +66,7 @@ def main():
     parser.add_argument("--heavier", type=float, default=1)
     parser.add_argument("--fit", nargs="+", default=["id_1", "id_3"])
     parser.add_argument("--hold-out", default="val_1")
+    parser.add_argument("--noise-deg", default="")
     parser.add_argument("--baseline", action="store_true")
     asked = parser.parse_args()
     asked.folder.mkdir(parents=True, exist_ok=True)
@@ -76,6 +77,7 @@ def main():
     command = "calibrate" if asked.baseline else "discover"
     estimated = [f"{name}_{what}" for name in NAMES[asked.arms] for what in ("arm.mass", "arm.mass_center.y", "arm.inertia.zz", "friction.viscosity")]
     further = ["--own-start", "--parameters", ",".join(estimated)] if asked.baseline else []
+    further += ["--noise-deg", asked.noise_deg] if asked.noise_deg else []
     trials = [f"{name}.csv" for name in asked.fit]
     sys.exit(subprocess.run([program, command, "pendulum.osim", *trials, "--hold-out", f"{asked.hold_out}.csv", "--step", asked.step, *further, "--out", command, "--force"],
                             cwd=asked.folder, check=False).returncode)
