@@ -37,6 +37,9 @@ fisherhill_quick_family(Torque torque 101)
 fisherhill_quick(ScaledTwins ${python} validation/discovery/twins/scaled_twins.py --build ${PROJECT_BINARY_DIR}
   --only slide:const --only pendulum:drag ${quick}/twins)
 set_tests_properties(Quick.ScaledTwins PROPERTIES PASS_REGULAR_EXPRESSION "2 of 2 pairs have the same verdict; the hidden effect is in the class of 2")
+fisherhill_quick(HiddenDrives ${python} validation/discovery/drives/hidden_drives.py --build ${PROJECT_BINARY_DIR}
+  --only pendulum:delay --only slide:none --sets 1 ${quick}/drives)
+set_tests_properties(Quick.HiddenDrives PROPERTIES PASS_REGULAR_EXPRESSION "Of 1 hidden effects 1 are in the class .*of 1 sets with nothing hidden 0 have a name")
 find_program(mpirun mpirun)
 if(mpirun AND TARGET fisherhill-mpi)
   fisherhill_quick(KillRanks validation/robustness/kill_ranks ${program} 1 1)

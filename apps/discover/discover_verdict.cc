@@ -351,9 +351,10 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   if (f.written) {
     const bool isCorrected = !f.written->trials.empty() && f.written->trials.front().driven;
     json["rmse_after_is_of"] =
-        isCorrected
-            ? "the driven trials: excitations as the muscles received them, sensor errors removed"
-            : "the recorded trials";
+        !isCorrected ? "the recorded trials"
+        : f.data.inputNames().empty()
+            ? "the driven trials: torques and forces as they acted, sensor errors removed"
+            : "the driven trials: excitations as the muscles received them, sensor errors removed";
     json["model"] =
         f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->model);
     json["trials"] = trialsJson(f);

@@ -104,9 +104,10 @@ std::vector<std::string> coordinatesInQuestion(const std::vector<std::string>& f
 
 namespace {
 
-/// With what the trials measure as outputs, unless some are chosen.
+/// With what the trials measure as outputs and what they command, unless some are chosen.
 CatalogueChoice withOutputs(CatalogueChoice choice, const std::vector<Trial>& trials,
                             const SystemOptions& system, const CoordinateNames& coordinates) {
+  if (!choice.drives) choice.drives = commandsOf(trials, coordinates.all);
   if (choice.sensors.empty()) choice.sensors = measuredOutputs(trials, system, coordinates.all);
   return choice;
 }
