@@ -97,6 +97,19 @@ TEST(DriveLaw, ShapesACommand) {
   EXPECT_NEAR(drivenCourse(times, command, {.share = 1, .limit = 4}).values[3], 4 - 0.05, 1e-12);
 }
 
+// 0.06 s later than one row is, but for rounding, another row.
+TEST(DriveLaw, RowsThatAreTheSameButForRoundingAreOne) {
+  Trial trial = drivenSwing(9, {}, 1);
+  trial.sha256 = "abc";
+  const Trial late = withDrives(trial, {{"swing", {.delay = 0.06}}});
+  EXPECT_EQ(late.times.size(), trial.times.size());
+  EXPECT_EQ(withDrives(trial, {{"swing", {.delay = 0.05}}}).times.size(),
+            2 * trial.times.size() - 3);
+  EXPECT_NEAR(late.applied[0].values[20], trial.applied[0].values[17], 1e-9);
+  EXPECT_EQ(late.sha256, "");
+  EXPECT_EQ(late.excitations.rows(), late.times.size());
+}
+
 TEST(DriveLaw, DerivativesMatchDifferences) {
   const VectorXd times = VectorXd::LinSpaced(4, 0, 3), command = Eigen::Vector4d(1, -2, 4, 3.1);
   const DriveLaw law{1.3, 0.25, 0.4, 0.7, 3};
@@ -254,6 +267,28 @@ TEST(DriveEffects, ACommandNeedsACoordinateInQuestion) {
   EXPECT_THROW(encompassingModel(drivenPendulum(), drivenOptions(), "swing",
                                  {.drives = std::vector<DriveCommand>{{"elbow", 1, {}}}}),
                std::invalid_argument);
+}
+
+TEST(DriveEffects, SlopesOfAnExternalForceAreChecked) {
+  const Driven driven({drivenSwing(8, {}, 0.5)});
+  const MusculoskeletalSystem system(driven.model, drivenOptions());
+  ParameterCatalogue::Setting setting{driven.model, {}, {}, {}};
+  setting.start = {VectorXd::Zero(1), VectorXd::Zero(1)};
+  const ExcitationSignal none({0}, Eigen::MatrixXd::Zero(1, 0));
+  const VectorXd one = VectorXd::Ones(1);
+  const auto slope = [&](const ExternalSlope& given) {
+    SensitivityOptions options;
+    options.simulation.duration = 0.1;
+    options.externalSlopes = {given};
+    return simulateWithSensitivities(system, setting, {{}}, none, options).q[0](10, 0);
+  };
+  // of a constant torque
+  EXPECT_GT(slope({0, 0, {0, 1}, one, one}), 0.001);
+  EXPECT_THROW(slope({1, 0, {0, 1}, one, one}), std::invalid_argument);
+  EXPECT_THROW(slope({0, 1, {0, 1}, one, one}), std::invalid_argument);
+  EXPECT_THROW(slope({0, 0, {0, 0}, one, one}), std::invalid_argument);
+  EXPECT_THROW(slope({0, 0, {0}, {}, {}}), std::invalid_argument);
+  EXPECT_THROW(slope({0, 0, {0, 1, 2}, one, one}), std::invalid_argument);
 }
 
 /// The ids of a search's finding with those that may stand in their place, and the estimates.

@@ -4,7 +4,7 @@
     python3 validation/discovery/drives/hidden_drives.py [--build build/program] [--only SYSTEM:EFFECT] [--seed 1] [--sets 3] FOLDER
 
 A slide and a pendulum whose damper the model has, each moved by a drive, simulated here by RK4. In each set one error of the drive is hidden, of a size that is drawn: the gain of its torque, a delay, a
-first-order lag, a saturation; or none. Of three trials the last is held out. Printed are what was hidden, the verdict with its class, the estimates with their deviations and whether 1.96 of these cover
+first-order lag, a saturation; or none. In sets of odd seeds the command went on before the first row, which the program, for which it was as there, does not know; a delay or lag then carries some of it over. Of three trials the last is held out. Printed are what was hidden, the verdict with its class, the estimates with their deviations and whether 1.96 of these cover
 the truth. --only may be repeated. Sets of one effect have seeds SEED, SEED + 1, … Exit status 1 where something is named though nothing is hidden, or the hidden effect is not in the class.
 """
 import argparse
@@ -52,7 +52,8 @@ EFFECTS = ("none", "gain", "delay", "lag", "saturation")
 class Drive:
     """Three waves as a command, and the force that is made of them."""
 
-    def __init__(self, system, chance):
+    def __init__(self, system, chance, ran_before):
+        self.ran_before = ran_before
         self.waves = [(system.drive * chance.uniform(0.3, 0.8), 2 * math.pi * chance.uniform(0.3, 1.3), chance.uniform(0, 2 * math.pi)) for _ in range(3)]
         self.gain, self.delay, self.lag, self.limit = 1, 0, 0, math.inf
 
@@ -60,17 +61,18 @@ class Drive:
         return sum(a * math.sin(w * t + p) for a, w, p in self.waves)
 
     def lagging(self, t):
-        """The steady course behind the lag, and what of the beginning is left, at rest before 0."""
+        """The steady course behind the lag, and what is left of a beginning before which the command was constant."""
         if not self.lag:
             return self.command(t)
 
         def steady(s):
             return sum(a / math.hypot(1, w * self.lag) * math.sin(w * s + p - math.atan(w * self.lag)) for a, w, p in self.waves)
 
-        return steady(t) + (self.command(0) - steady(0)) * math.exp(-t / self.lag)
+        return steady(t) + (0 if self.ran_before else (self.command(0) - steady(0)) * math.exp(-t / self.lag))
 
     def force(self, t):
-        return self.gain * min(max(self.lagging(max(0, t - self.delay)), -self.limit), self.limit)
+        since = t - self.delay
+        return self.gain * min(max(self.lagging(since if self.ran_before else max(0, since)), -self.limit), self.limit)
 
 
 def size_of(effect, chance):
@@ -103,7 +105,7 @@ def searched(program, folder, system, effect, seed):
     chance = random.Random(f"drive {system.name} {effect} {seed}")
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "model.osim").write_text(system.osim())
-    drives = [Drive(system, chance) for _ in range(3)]
+    drives = [Drive(system, chance, seed % 2 == 1) for _ in range(3)]
     value = size_of(effect, chance)
     if effect == "saturation":  # of the largest command of all
         value *= max(abs(drive.command(STEP * i)) for drive in drives for i in range(0, SAMPLES * EVERY, EVERY))

@@ -14,9 +14,9 @@ namespace bio::discover {
 /// The relation between the command τ of a drive, a column of a trial, and its force on the
 /// coordinate:
 ///     τ′(t) = g·S(τ_L(t − d)),   lag·τ̇_L = τ − τ_L,   τ_L = τ at the first row,
-///     S(x) = x − a·sign(x)·E(|x| − s),   E = 0 below −w, (E's argument + w)²/4w to w, then itself
-/// w = s/20. Before its first row the command was as there. τ_L is exact at the rows of a command
-/// that is straight between them, and τ′ straight between them d later. The default is τ itself.
+///     S(x) = x − a·sign(x)·E(|x| − s),   E(y) = max(0, y), of |y| < w = s/20 (y + w)²/4w
+/// Before its first row the command was as there. τ_L is exact at the rows of a command that is
+/// straight between them; τ′ is straight between these times + d. The default is τ itself.
 struct DriveLaw {
   double gain = 1;   ///< g [1]
   double delay = 0;  ///< d [s] ≥ 0

@@ -43,10 +43,10 @@ struct ExternalNodes {
 /// ∂(external force on one coordinate)/∂θ of a parameter that shapes SimulationOptions::
 /// externalForce: linear within each interval between times, where it may jump, and 0 outside them.
 struct ExternalSlope {
-  Eigen::Index column = 0;     ///< of θ among the parameters wanted
-  int coordinate = 0;          ///< index in the skeleton, free or prescribed
-  std::vector<double> times;   ///< [s] strictly rising, at least two
-  Eigen::VectorXd first, last; ///< at the two ends of each interval [unit of the force per unit of θ]
+  Eigen::Index column = 0;      ///< of θ among the parameters wanted
+  int coordinate = 0;           ///< index in the skeleton, free or prescribed
+  std::vector<double> times;    ///< [s] strictly rising, at least two
+  Eigen::VectorXd first, last;  ///< where each interval begins and ends [force per unit of θ]
   double at(double t) const;
 };
 
