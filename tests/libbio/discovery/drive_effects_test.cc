@@ -26,15 +26,16 @@ using testing::Not;
 
 constexpr const char* driveIds[] = {"drive_gain", "drive_delay", "drive_lag", "drive_saturation"};
 
-const info::discover::Candidate& candidateOf(const MusculoskeletalProblem& data,
-                                             const std::string& id) {
+const info::discover::Candidate& driveCandidate(const MusculoskeletalProblem& data,
+                                                const std::string& id) {
   for (const auto& one : data.candidates())
     if (one.id == id) return one;
   throw std::invalid_argument("no candidate " + id);
 }
 
-struct Driven {
-  explicit Driven(std::vector<Trial> trials, double optimalForce = 0) : model(drivenPendulum()) {
+struct DrivenCase {
+  explicit DrivenCase(std::vector<Trial> trials, double optimalForce = 0)
+      : model(drivenPendulum()) {
     if (optimalForce != 0) model.actuators.push_back({"motor", "swing", optimalForce, true});
     MusculoskeletalProblemOptions options;
     options.simulation.step = 0.005;
@@ -44,13 +45,13 @@ struct Driven {
     values = info::discover::nominalValues(*data);
   }
   void put(const std::string& id, std::vector<double> numbers) {
-    const auto& quantities = candidateOf(*data, id).quantities;
+    const auto& quantities = driveCandidate(*data, id).quantities;
     ASSERT_EQ(quantities.size(), numbers.size());
     for (std::size_t i = 0; i < numbers.size(); ++i)
       values[static_cast<Index>(quantities[i])] = numbers[i];
   }
   double error(const std::string& id) const {
-    const auto& quantities = candidateOf(*data, id).quantities;
+    const auto& quantities = driveCandidate(*data, id).quantities;
     const auto at = data->predict(0, values, {}, quantities, false);
     double worst = 0;
     for (std::size_t i = 0; i < quantities.size(); ++i)
@@ -70,7 +71,7 @@ struct Driven {
   VectorXd values;
 };
 
-std::vector<std::string> idsOf(const MusculoskeletalProblem& data) {
+std::vector<std::string> offeredIds(const MusculoskeletalProblem& data) {
   std::vector<std::string> ids;
   for (const auto& one : data.candidates()) ids.push_back(one.id);
   return ids;
@@ -132,8 +133,8 @@ TEST(DriveLaw, DerivativesMatchDifferences) {
 }
 
 TEST(DriveEffects, AreOfferedWhereATrialDrivesAndThoseOfMusclesAreNot) {
-  const Driven driven({drivenSwing(1, {}, 0.5)});
-  const auto ids = idsOf(*driven.data);
+  const DrivenCase driven({drivenSwing(1, {}, 0.5)});
+  const auto ids = offeredIds(*driven.data);
   for (const char* id : driveIds) EXPECT_THAT(ids, Contains(id));
   for (const char* id : {"fatigue", "delay", "shape"}) EXPECT_THAT(ids, Not(Contains(id)));
   for (const auto& one : driven.data->candidates()) {
@@ -146,18 +147,18 @@ TEST(DriveEffects, AreOfferedWhereATrialDrivesAndThoseOfMusclesAreNot) {
   Trial still = drivenSwing(1, {}, 0.5);
   still.applied.front().values.setConstant(0.4);
   for (const Trial& trial : {still, freeSwing(0.5, 1, viscous)}) {
-    const Driven held({trial});
-    for (const char* id : driveIds) EXPECT_THAT(idsOf(*held.data), Not(Contains(id)));
+    const DrivenCase held({trial});
+    for (const char* id : driveIds) EXPECT_THAT(offeredIds(*held.data), Not(Contains(id)));
   }
 }
 
 TEST(DriveEffects, ChangeNothingWhereTheyAreAbsent) {
-  Driven driven({drivenSwing(2, {}, 1)});
+  DrivenCase driven({drivenSwing(2, {}, 1)});
   const VectorXd base = driven.data->outputs(0, driven.values, {});
   const VectorXd nominal = driven.values;
   for (const char* id : driveIds) {
     driven.values = nominal;
-    const auto& one = candidateOf(*driven.data, id);
+    const auto& one = driveCandidate(*driven.data, id);
     for (std::size_t i = 1; i < one.quantities.size(); ++i)
       driven.values[static_cast<Index>(one.quantities[i])] = one.starts.back()[1];
     EXPECT_EQ(driven.data->outputs(0, driven.values, {}), base) << id;
@@ -167,7 +168,7 @@ TEST(DriveEffects, ChangeNothingWhereTheyAreAbsent) {
 
 TEST(DriveEffects, DerivativesMatchDifferencesOfWholeSimulations) {
   for (const double optimalForce : {0.0, 2.5}) {
-    Driven driven({drivenSwing(3, {}, 1, optimalForce)}, optimalForce);
+    DrivenCase driven({drivenSwing(3, {}, 1, optimalForce)}, optimalForce);
     const double most = driven.data->encompassing().commands().at(0).largest;
     // together, so that each sees the others
     driven.put("drive_gain", {1.3});
@@ -179,11 +180,11 @@ TEST(DriveEffects, DerivativesMatchDifferencesOfWholeSimulations) {
 }
 
 TEST(DriveEffects, HaveTheRightSlopesWhereTheyAreAbsent) {
-  const Driven driven({drivenSwing(4, {}, 1)});
+  const DrivenCase driven({drivenSwing(4, {}, 1)});
   for (const char* id : {"drive_gain", "drive_saturation"}) EXPECT_LT(driven.error(id), 2e-4) << id;
   // these have one side only
   for (const char* id : {"drive_delay", "drive_lag"}) {
-    const std::size_t q = candidateOf(*driven.data, id).quantities.front();
+    const std::size_t q = driveCandidate(*driven.data, id).quantities.front();
     const VectorXd slope = driven.data->predict(0, driven.values, {}, {q}, false).gamma;
     VectorXd moved = driven.values;
     constexpr double h = 1e-6;
@@ -198,17 +199,17 @@ TEST(DriveEffects, HaveTheRightSlopesWhereTheyAreAbsent) {
 // that is so much stronger.
 TEST(DriveEffects, AGainIsAStrongerActuator) {
   const Trial trial = drivenSwing(5, {}, 1);
-  Driven torque({trial}), motor({drivenSwing(5, {}, 1, 2.5)}, 2.5);
+  DrivenCase torque({trial}), motor({drivenSwing(5, {}, 1, 2.5)}, 2.5);
   Trial larger = trial;
   larger.applied.front().values *= 1.4;
-  const VectorXd expected = Driven({larger}).data->outputs(0, torque.values, {});
+  const VectorXd expected = DrivenCase({larger}).data->outputs(0, torque.values, {});
   torque.put("drive_gain", {1.4});
   motor.put("drive_gain", {1.4});
   EXPECT_LT((torque.data->outputs(0, torque.values, {}) - expected).norm(), 1e-12);
   EXPECT_LT((motor.data->outputs(0, motor.values, {}) - expected).norm(), 1e-10);
-  const auto slopes = [](const Driven& one) {
+  const auto slopes = [](const DrivenCase& one) {
     return one.data
-        ->predict(0, one.values, {}, candidateOf(*one.data, "drive_gain").quantities, false)
+        ->predict(0, one.values, {}, driveCandidate(*one.data, "drive_gain").quantities, false)
         .gamma;
   };
   EXPECT_LT((slopes(torque) - slopes(motor)).norm(), 1e-9 * slopes(torque).norm());
@@ -222,9 +223,10 @@ TEST(DriveEffects, AGainIsAStrongerActuator) {
 TEST(DriveEffects, RepairedModelsReplayTheirTrialsAsFitted) {
   for (const double optimalForce : {0.0, 2.5}) {
     for (const char* id : driveIds) {
-      Driven driven({drivenSwing(6, {}, 1.5, optimalForce), drivenSwing(7, {}, 1.5, optimalForce)},
-                    optimalForce);
-      const auto& one = candidateOf(*driven.data, id);
+      DrivenCase driven(
+          {drivenSwing(6, {}, 1.5, optimalForce), drivenSwing(7, {}, 1.5, optimalForce)},
+          optimalForce);
+      const auto& one = driveCandidate(*driven.data, id);
       // a delay for which corners fall on rows, but for rounding
       driven.put(id, std::string(id) == "drive_delay"
                          ? std::vector<double>{0.06}
@@ -270,7 +272,7 @@ TEST(DriveEffects, ACommandNeedsACoordinateInQuestion) {
 }
 
 TEST(DriveEffects, SlopesOfAnExternalForceAreChecked) {
-  const Driven driven({drivenSwing(8, {}, 0.5)});
+  const DrivenCase driven({drivenSwing(8, {}, 0.5)});
   const MusculoskeletalSystem system(driven.model, drivenOptions());
   ParameterCatalogue::Setting setting{driven.model, {}, {}, {}};
   setting.start = {VectorXd::Zero(1), VectorXd::Zero(1)};
@@ -299,7 +301,7 @@ struct FoundDrive {
 };
 
 FoundDrive foundDrive(const MotorError& error, unsigned seed) {
-  const Driven driven(
+  const DrivenCase driven(
       {drivenSwing(seed, error), drivenSwing(seed + 1, error), drivenSwing(seed + 2, error)});
   info::discover::Options search;
   search.heldOut = {2};
