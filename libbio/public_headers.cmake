@@ -37,6 +37,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/design/separating_design.h
   include/bio/discovery/add_effects.h
   include/bio/discovery/contradiction.h
+  include/bio/discovery/drive_law.h
   include/bio/discovery/effect_names.h
   include/bio/discovery/effect_size.h
   include/bio/discovery/effects.h

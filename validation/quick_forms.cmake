@@ -39,6 +39,9 @@ fisherhill_quick(ScaledTwins ${python} validation/discovery/twins/scaled_twins.p
 set_tests_properties(Quick.ScaledTwins PROPERTIES PASS_REGULAR_EXPRESSION "2 of 2 pairs have the same verdict; the hidden effect is in the class of 2")
 fisherhill_quick(OwnEffects ${python} validation/discovery/own/own_effects.py --build ${PROJECT_BINARY_DIR} --sets 1 ${quick}/own)
 set_tests_properties(Quick.OwnEffects PROPERTIES PASS_REGULAR_EXPRESSION "own: 1 of 1 first")
+fisherhill_quick(HiddenDrives ${python} validation/discovery/drives/hidden_drives.py --build ${PROJECT_BINARY_DIR}
+  --only pendulum:delay --only slide:none --sets 1 ${quick}/drives)
+set_tests_properties(Quick.HiddenDrives PROPERTIES PASS_REGULAR_EXPRESSION "Of 1 hidden effects 1 are in the class .*of 1 sets with nothing hidden 0 have a name")
 find_program(mpirun mpirun)
 if(mpirun AND TARGET fisherhill-mpi)
   fisherhill_quick(KillRanks validation/robustness/kill_ranks ${program} 1 1)

@@ -212,9 +212,13 @@ class Writer {
               ? "The trials were cut where they first pass the position at which the model fails: "
                 "the driven trials (driven_*.sto) end there. They hold the excitations that the "
                 "muscles received and the recording without errors of the sensor."
-              : "The excitations or the recording were corrected: the driven trials (driven_*.sto) "
+          : !f_.data.inputNames().empty()
+              ? "The excitations or the recording were corrected: the driven trials (driven_*.sto) "
                 "hold the excitations that the muscles received and the corrected recording, which "
-                "shows the motion itself.");
+                "shows the motion itself."
+              : "The commands or the recording were corrected: the driven trials (driven_*.sto) "
+                "hold the torques and forces that acted and the corrected recording, which shows "
+                "the motion itself.");
     }
   }
 

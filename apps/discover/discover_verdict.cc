@@ -351,9 +351,8 @@ ordered_json verdictJson(const DiscoverFindings& f) {
   if (f.written) {
     const bool isCorrected = !f.written->trials.empty() && f.written->trials.front().driven;
     json["rmse_after_is_of"] =
-        isCorrected
-            ? "the driven trials: excitations as the muscles received them, sensor errors removed"
-            : "the recorded trials";
+        isCorrected ? "the driven trials: inputs as they acted, sensor errors removed"
+                    : "the recorded trials";
     json["model"] =
         f.written->model.empty() ? ordered_json(nullptr) : ordered_json(f.written->model);
     json["trials"] = trialsJson(f);

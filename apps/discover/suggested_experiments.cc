@@ -17,6 +17,40 @@ std::string withoutOwner(const std::string& id) {
 
 }  // namespace
 
+namespace {
+
+FollowUps followUpsOfMechanisms(const std::string& end, const std::string& place) {
+  return {
+      {
+          {{"drive_delay", "drive_lag", "clock", "lag"},
+           "Repeat a trial with steps of the command: behind a lag the motion begins at once but "
+           "slowly, behind a delay late; where the sensor is late, a push by hand shows late, "
+           "too."},
+          {{"drive_gain", "mass", "payload", "inertia_", "centre_", "gain"},
+           "Repeat a trial with a known mass, e.g. 1 kg, " + place +
+               ", and let it swing without the drive: the first depends on the drive's gain, the "
+               "second does not."},
+          {{"drive_saturation", "drive_gain"},
+           "Repeat a trial with half the command: a drive below its limit does not saturate."},
+          {{"tilt", "handforce", "const"},
+           "Repeat a trial with a known mass, e.g. 1 kg, " + place + ": the effect of gravity " +
+               "grows with it, a force on " + end + " does not."},
+          {{"payload", "mass", "const", "handforce"},
+           "Let it swing without its drive: a mass adds weight and inertia, a force adds no "
+           "inertia."},
+          {{"visc", "coulomb", "stribeck", "drag", "powerdamp"},
+           "Repeat the trial at half and at twice the speed: at twice the speed Coulomb friction "
+           "is unchanged, viscous torque doubles, quadratic drag quadruples."},
+      },
+      "Repeat the trials at another speed and with a known mass " + place +
+          ": these data cannot distinguish the effects listed together.",
+      "Record motion without the drive over the region that the score map marks: this shows "
+      "whether the missing effect belongs to the joint or to the drive.",
+      "Record one more trial and compare it with the motion that with_effect.osim predicts."};
+}
+
+}  // namespace
+
 FollowUps followUpsOfModels(const bio::discover::EncompassingModel& model) {
   std::string loadColumn;
   for (const bio::discover::MovingCoordinate& at : model.coordinates())
@@ -24,6 +58,7 @@ FollowUps followUpsOfModels(const bio::discover::EncompassingModel& model) {
                   (at.coordinate.isRotation ? ".torque" : ".force");
   const std::string end = bio::discover::endOfLimb(model);
   const std::string place = bio::discover::placeOfMass(model);
+  if (model.system().numMuscles() == 0) return followUpsOfMechanisms(end, place);
   FollowUps known{
       {
           {{"delay", "clock"},

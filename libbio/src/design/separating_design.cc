@@ -56,6 +56,7 @@ MusculoskeletalProblemOptions planning(MusculoskeletalProblemOptions options,
                                        const std::vector<ChannelCandidate>& observed) {
   options.usableSeries = false;
   options.sensors.clear();
+  options.drives.emplace();  // inputs that are searched for are as they are made
   for (const ChannelCandidate& candidate : observed) options.sensors.push_back(candidate.what);
   return options;
 }

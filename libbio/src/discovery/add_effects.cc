@@ -55,7 +55,11 @@ std::string wordsOf(const EncompassingModel& encompassing,
 
 Augmented augmentedModel(const EncompassingModel& encompassing, const Eigen::VectorXd& values) {
   ParameterCatalogue::Setting setting = encompassing.settingAt(values, {});
-  Augmented result{std::move(setting.model), std::move(setting.mapping), {}, {}};
+  Augmented result{std::move(setting.model),
+                   std::move(setting.mapping),
+                   {},
+                   {},
+                   encompassing.driveLawsAt(values)};
   for (std::size_t i = 0; i < encompassing.sensors().size(); ++i)
     result.sensors.push_back(encompassing.sensorAt(values, i));
   Model& model = result.model;

@@ -143,6 +143,37 @@ void EncompassingModel::lawFollows(std::vector<std::size_t> quantities) {
   laws_.back().quantities = std::move(quantities);
 }
 
+void EncompassingModel::setCommands(const std::vector<DriveCommand>& commands) {
+  for (const DriveCommand& command : commands) {
+    if (std::none_of(coordinates_.begin(), coordinates_.end(), [&](const MovingCoordinate& at) {
+          return at.coordinate.name == command.coordinate;
+        }))
+      throw std::invalid_argument(
+          fmt::format("drive of '{}': must be a coordinate in question", command.coordinate));
+    drives_.push_back({command});
+  }
+}
+
+Drive* EncompassingModel::driveOf(const MovingCoordinate& at) {
+  for (Drive& drive : drives_)
+    if (drive.command.coordinate == at.coordinate.name) return &drive;
+  return nullptr;
+}
+
+std::vector<DriveCommand> EncompassingModel::commands() const {
+  std::vector<DriveCommand> commands;
+  for (const Drive& drive : drives_) commands.push_back(drive.command);
+  return commands;
+}
+
+DriveLaws EncompassingModel::driveLawsAt(const VectorXd& values) const {
+  DriveLaws laws;
+  for (const Drive& drive : drives_)
+    if (const DriveLaw law = driveLaw(drive, values); !law.isTrue())
+      laws[drive.command.coordinate] = law;
+  return laws;
+}
+
 void EncompassingModel::trialsLast(double first, double last) {
   constexpr double edge = 0.2;     // [s] of a trial's ends where nothing that changes shows
   constexpr double spacing = 0.6;  // [s] between starts of fits

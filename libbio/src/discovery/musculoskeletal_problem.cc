@@ -104,9 +104,11 @@ std::vector<std::string> coordinatesInQuestion(const std::vector<std::string>& f
 
 namespace {
 
-/// With what the trials measure as outputs, and how they saw it move, unless that is chosen.
+/// With what the trials measure as outputs, what they command and how they saw it move, unless
+/// these are chosen.
 CatalogueChoice withOutputs(CatalogueChoice choice, const std::vector<Trial>& trials,
                             const SystemOptions& system, const CoordinateNames& coordinates) {
+  if (!choice.drives) choice.drives = commandsOf(trials, coordinates.all);
   if (choice.sensors.empty()) choice.sensors = measuredOutputs(trials, system, coordinates.all);
   if (choice.motions.empty()) choice.motions = motionSizes(trials, coordinates.all);
   return choice;

@@ -57,7 +57,12 @@ std::vector<PlannedExperiment> plannedExperiments(const Trial& trial,
   }
   for (const MovingCoordinate& at : model.coordinates()) {
     const Coordinate& coordinate = at.coordinate;
-    if (model.system().isPrescribed(at.index)) continue;
+    const auto& drives = model.drives();
+    const bool isDriven = std::any_of(drives.begin(), drives.end(), [&](const Drive& drive) {
+      return drive.command.coordinate == at.coordinate.name;
+    });
+    // a push in the column of the commands would pass through the drive
+    if (isDriven || model.system().isPrescribed(at.index)) continue;
     const bool turns = coordinate.isRotation;
     for (const double size : {0.25, 0.5, 1.0}) {
       planned.push_back(

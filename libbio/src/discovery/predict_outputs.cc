@@ -50,8 +50,10 @@ MusculoskeletalProblem::Columns MusculoskeletalProblem::columnsOf(
     }
     columns.kind.push_back(kind);
     columns.startSensor.push_back(startSensor);
-    columns.place.push_back(direction.empty() ? -1 : static_cast<Index>(columns.directions.size()));
-    if (!direction.empty()) columns.directions.push_back(std::move(direction));
+    // a drive's column is that of its external force, whatever the numbers of the model are
+    const bool hasColumn = !direction.empty() || kind == Meaning::Kind::drive;
+    columns.place.push_back(hasColumn ? static_cast<Index>(columns.directions.size()) : -1);
+    if (hasColumn) columns.directions.push_back(std::move(direction));
   }
   return columns;
 }
@@ -118,6 +120,7 @@ class MusculoskeletalProblem::Run final : public Simulation {
           options_.externalNodes.coordinates.push_back(at.index);
       }
       system_.emplace(problem.encompassing_.systemOf(setting_));
+      options_.externalSlopes = problem.driveSlopes(one_, values, wanted, columns_.place, *system_);
       sensors_ = problem.sensedBy(*system_, one_, values);
       for (const SensedMotion& sensor : sensors_) {
         options_.reactions = options_.reactions || sensor.needsReactions();

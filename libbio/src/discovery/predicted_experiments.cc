@@ -47,8 +47,10 @@ std::vector<PredictedExperiment> predictExperiments(const Model& model, const Sy
   std::vector<PlannedExperiment> experiments = plannedExperiments(trial, data.encompassing());
   for (PlannedExperiment& experiment : passiveMotions(trial, data.encompassing()))
     experiments.push_back(std::move(experiment));
+  MusculoskeletalProblemOptions same = options;
+  same.drives = encompassing.commands();
   for (const PlannedExperiment& experiment : experiments) {
-    const MusculoskeletalProblem planned(model, system, coordinates, {experiment.trial}, options);
+    const MusculoskeletalProblem planned(model, system, coordinates, {experiment.trial}, same);
     // where the system would go
     Eigen::VectorXd values = info::discover::nominalValues(planned);
     const auto own = static_cast<Index>(data.encompassing().quantities().size());

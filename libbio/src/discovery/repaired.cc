@@ -27,11 +27,12 @@ VectorXd ownValues(const MusculoskeletalProblem& data, const VectorXd& values) {
   return values.head(static_cast<Index>(data.encompassing().quantities().size()));
 }
 
-/// EMG, sensor or a muscle that was switched on: what a model file cannot hold.
+/// EMG, drive, sensor or a muscle that was switched on: what a model file cannot hold.
 bool concernsTrials(const Augmented& added) {
   const EmgMapping& m = added.mapping;
-  return !added.muscles.empty() || !m.gain.empty() || m.delay != 0 || m.nonlinearity != 0 ||
-         !m.offset.empty() || !m.crosstalk.empty() || !m.saturation.empty() || m.fatigue != 0 ||
+  return !added.muscles.empty() || !added.drives.empty() || !m.gain.empty() || m.delay != 0 ||
+         m.nonlinearity != 0 || !m.offset.empty() || !m.crosstalk.empty() ||
+         !m.saturation.empty() || m.fatigue != 0 ||
          std::any_of(added.sensors.begin(), added.sensors.end(),
                      [](const SensorLaw& sensor) { return !sensor.isTrue(); });
 }
@@ -188,6 +189,7 @@ Repaired repairedModel(const MusculoskeletalProblem& data, const Verdict& verdic
     Trial trial = data.trial(index);
     addStarts(model, one, trial.file, trial.sha256);
     if (isDriven) {
+      trial = withDrives(std::move(trial), result.added.drives);
       if (const VectorXd force = data.timedForce(index, verdict.values); force.size() > 0) {
         const std::vector<double> nodes = info::discover::nodeTimes(data, index);
         const auto n = static_cast<Index>(nodes.size());

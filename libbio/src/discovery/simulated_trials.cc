@@ -65,6 +65,62 @@ MatrixXd MusculoskeletalProblem::timedDirections(const OfTrial& trial, const Vec
   return nodes;
 }
 
+namespace {
+
+/// A trial without what was measured: copied for every simulation.
+Trial inputsOf(const Trial& trial) {
+  Trial inputs;
+  inputs.file = trial.file;
+  inputs.times = trial.times;
+  inputs.excitations.resize(trial.times.size(), 0);
+  inputs.applied = trial.applied;
+  return inputs;
+}
+
+/// What a force of 1 in the trial is with the optimal force that a system's actuator has.
+double actuatorGain(const AppliedForce& applied, const MusculoskeletalSystem& system) {
+  if (applied.actuator.empty() || applied.optimalForce == 0) return 1;
+  for (const CoordinateActuator& actuator : system.actuators())
+    if (actuator.name == applied.actuator) return actuator.optimalForce / applied.optimalForce;
+  return 1;
+}
+
+}  // namespace
+
+std::vector<ExternalSlope> MusculoskeletalProblem::driveSlopes(
+    const OfTrial& trial, const VectorXd& values, const std::vector<std::size_t>& wanted,
+    const std::vector<Index>& places, const MusculoskeletalSystem& system) const {
+  std::vector<ExternalSlope> slopes;
+  for (const Drive& drive : encompassing_.drives()) {
+    const int coordinate = encompassing_.system().skeleton().indexOf(drive.command.coordinate);
+    for (const AppliedForce& applied : trial.trial.applied) {
+      if (applied.coordinate != drive.command.coordinate) continue;
+      std::optional<DrivenCourse> course;
+      const auto add = [&](std::size_t j, const VectorXd& first, const VectorXd& last) {
+        const double gain = actuatorGain(applied, system);
+        slopes.push_back({places[j], coordinate, course->times, gain * first, gain * last});
+      };
+      for (std::size_t j = 0; j < wanted.size(); ++j) {
+        const std::size_t q = wanted[j];
+        if (q >= encompassing_.quantities().size() ||
+            encompassing_.kindOf(q) != Meaning::Kind::drive)
+          continue;
+        if (!course)
+          course = drivenCourse(trial.trial.times, applied.values, driveLaw(drive, values));
+        const auto addCorners = [&](const VectorXd& slope) {
+          add(j, slope.head(slope.size() - 1), slope.tail(slope.size() - 1));
+        };
+        if (q == drive.gain) addCorners(course->inGain);
+        if (q == drive.lag) addCorners(course->inLag);
+        if (q == drive.share) addCorners(course->inShare);
+        if (q == drive.limit) addCorners(course->inLimit);
+        if (q == drive.delay) add(j, course->inDelay, course->inDelay);
+      }
+    }
+  }
+  return slopes;
+}
+
 ParameterCatalogue::Setting MusculoskeletalProblem::settingAt(
     const OfTrial& trial, const VectorXd& values, const std::vector<std::size_t>& wanted) const {
   if (values.size() != static_cast<Index>(quantities_.size())) {
@@ -92,6 +148,9 @@ ParameterCatalogue::Setting MusculoskeletalProblem::settingAt(
 SimulationOptions MusculoskeletalProblem::simulationOf(const OfTrial& trial, const VectorXd& values,
                                                        const VectorXd& latent) const {
   SimulationOptions simulation = trial.recorded.simulation;
+  if (const DriveLaws laws = encompassing_.driveLawsAt(values); !laws.empty())
+    simulation.externalForce =
+        externalForceOf(withDrives(inputsOf(trial.trial), laws), encompassing_.system());
   // a sensor may look behind the last sample
   double end = trial.times.back();
   for (const Series& series : trial.series) {

@@ -1,6 +1,7 @@
 #include "bio/sensitivity/coupled_sensitivity.h"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 
 #include "sensitivity/parameter_directions.h"
@@ -30,7 +31,32 @@ void checkNodes(const ExternalNodes& nodes, const MusculoskeletalSystem& system)
     throw std::invalid_argument("nodes of the external force: must act on a coordinate");
 }
 
+void checkSlopes(const std::vector<ExternalSlope>& slopes, const MusculoskeletalSystem& system) {
+  for (const ExternalSlope& slope : slopes) {
+    const auto intervals = static_cast<Eigen::Index>(slope.times.size()) - 1;
+    const bool rises = std::adjacent_find(slope.times.begin(), slope.times.end(),
+                                          std::greater_equal<>()) == slope.times.end();
+    if (intervals < 1 || !rises || slope.first.size() != intervals ||
+        slope.last.size() != intervals)
+      throw std::invalid_argument(
+          "slope of the external force: times must be at least 2 and rise, with a value at either "
+          "end of each interval");
+    if (slope.coordinate < 0 || slope.coordinate >= system.skeleton().numCoordinates())
+      throw std::invalid_argument(
+          "slope of the external force: coordinate must be a free or prescribed one");
+  }
+}
+
 }  // namespace
+
+double ExternalSlope::at(double t) const {
+  if (t < times.front() || t > times.back()) return 0;
+  const auto behind = std::upper_bound(times.begin() + 1, times.end() - 1, t);
+  const auto k = static_cast<std::size_t>(behind - times.begin()) - 1;
+  const double w = (t - times[k]) / (times[k + 1] - times[k]);
+  const auto interval = static_cast<Eigen::Index>(k);
+  return (1 - w) * first[interval] + w * last[interval];
+}
 
 std::vector<std::string> muscleNames(const MusculoskeletalSystem& system) {
   std::vector<std::string> names;
@@ -85,6 +111,7 @@ SensitivityRun::SensitivityRun(const MusculoskeletalSystem& system,
     throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
   }
   checkNodes(used.externalNodes, system);
+  checkSlopes(used.externalSlopes, system);
   driven_ = drivenExcitation(trial, muscleNames(system), setting.mapping);
   start_ = startOf(system, setting, driven_, used.simulation.startTime);
   checkSimulation(system, driven_, start_, used.simulation);
@@ -94,6 +121,11 @@ SensitivityRun::SensitivityRun(const MusculoskeletalSystem& system,
 }
 
 SensitivityTrajectory SensitivityRun::sensitivities(const std::vector<ParameterDirection>& wanted) {
+  for (const ExternalSlope& slope : options().externalSlopes) {
+    if (slope.column < 0 || slope.column >= static_cast<Eigen::Index>(wanted.size()))
+      throw std::invalid_argument(
+          "slope of the external force: column must be that of a parameter wanted");
+  }
   const ParameterEffects effects(system_, setting_, wanted);
   return withCoordinates(system_.skeleton(), [&](auto N) {
     SensitivityPass<decltype(N)::value> pass(system_, effects, setting_, trial_, driven_,

@@ -45,7 +45,7 @@ class ReactionSlopes {
     tau_.noalias() = tau_q * state.dq;
     tau_.noalias() += tau_v * speed;
     direct_.addOtherForces(motion.time[static_cast<std::size_t>(row)], q, qDot, external_, tau_);
-    state.columns.addNodes(motion.time[static_cast<std::size_t>(row)], tau_);
+    state.columns.addExternal(motion.time[static_cast<std::size_t>(row)], tau_);
     for (std::size_t i = 0; i < system_.numMuscles(); ++i) {
       addMuscle(i, q, forces.row(static_cast<Index>(i)), state);
     }

@@ -15,10 +15,11 @@ class SensitivityColumns {
  public:
   using Index = Eigen::Index;
 
-  SensitivityColumns(Index numParameters, const ExternalNodes& nodes)
+  SensitivityColumns(Index numParameters, const SensitivityOptions& options)
       : numParameters_(numParameters),
-        nodes_(&nodes),
-        perTime_(static_cast<Index>(nodes.coordinates.size())) {}
+        nodes_(&options.externalNodes),
+        slopes_(&options.externalSlopes),
+        perTime_(static_cast<Index>(nodes_->coordinates.size())) {}
 
   Index numParameters() const { return numParameters_; }
   Index ofTime() const { return numParameters_; }
@@ -59,7 +60,26 @@ class SensitivityColumns {
     }
   }
 
-  /// Adds ∂f/∂d of the nodes between which t lies to the force's rows.
+  /// Adds ∂f/∂d of the nodes between which t lies, and the slopes of the external force, to the
+  /// force's rows.
+  template <class Rows>
+  void addExternal(double t, Rows& force) const {
+    for (const ExternalSlope& slope : *slopes_)
+      force(slope.coordinate, slope.column) += slope.at(t);
+    addNodes(t, force);
+  }
+
+  /// See SensitivityState::moveAlong.
+  template <class RowsOf>
+  void moveAlong(RowsOf& rows, const Eigen::RowVectorXd& dt) const {
+    for (Index r = 0; r < rows.rows(); ++r) {
+      const double rate = rows(r, ofTime());
+      rows.row(r) += rate * dt;
+      rows(r, ofTime()) = 0;
+    }
+  }
+
+ private:
   template <class Rows>
   void addNodes(double t, Rows& force) const {
     const std::vector<double>& times = nodes_->times;
@@ -75,19 +95,9 @@ class SensitivityColumns {
     }
   }
 
-  /// See SensitivityState::moveAlong.
-  template <class RowsOf>
-  void moveAlong(RowsOf& rows, const Eigen::RowVectorXd& dt) const {
-    for (Index r = 0; r < rows.rows(); ++r) {
-      const double rate = rows(r, ofTime());
-      rows.row(r) += rate * dt;
-      rows(r, ofTime()) = 0;
-    }
-  }
-
- private:
   Index numParameters_;
   const ExternalNodes* nodes_;
+  const std::vector<ExternalSlope>* slopes_;
   Index perTime_;                 ///< nodes at one time
   std::size_t begun_ = 0;         ///< times whose nodes have columns
   mutable std::size_t node_ = 0;  ///< before the time reached

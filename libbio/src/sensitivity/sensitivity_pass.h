@@ -26,7 +26,7 @@ class SensitivityPass {
         options_(options),
         driven_(driven),
         configuration_(system),
-        state_{SensitivityColumns(numParameters, options.externalNodes),
+        state_{SensitivityColumns(numParameters, options),
                {},
                {},
                {},

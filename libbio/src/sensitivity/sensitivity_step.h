@@ -63,7 +63,7 @@ class SensitivityStep {
       force_ += step_.externalSlope() * middleTime_;
     }
     if (timeMoves && step_.others().any()) force_ += step_.others().load_t() * middleTime_;
-    state.columns.addNodes(step_.middle(), force_);
+    state.columns.addExternal(step_.middle(), force_);
 
     // muscles: dℓ′ = trialFibre + (V_L/2J) ∂ℓ·dq′
     for (std::size_t m = 0; m < system_.numMuscles(); ++m) {

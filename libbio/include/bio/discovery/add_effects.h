@@ -17,13 +17,15 @@ namespace bio::discover {
 /// of parameters change the parameter; a missing muscle is the model's own, switched on. A force is
 /// called <coordinate>_<id>, by which it is recognised again. Effects of EMG and sensor cannot be
 /// written into a model: a simulation has to pass the excitations through `mapping`
-/// (drivenExcitation) and to compare the sensor's reading. A muscle that was switched on needs an
+/// (drivenExcitation), the commands through `drives` (withDrives), and to compare the sensor's
+/// reading. A muscle that was switched on needs an
 /// excitation (withSynergists).
 struct Augmented {
   Model model;
   EmgMapping mapping;
   std::vector<SensorLaw> sensors;    ///< of EncompassingModel::sensors()
   std::vector<std::string> muscles;  ///< switched on
+  DriveLaws drives = {};             ///< what a trial's torques, forces and controls pass through
 };
 
 /// The model at the given values of all quantities of `encompassing`, without the forces that are

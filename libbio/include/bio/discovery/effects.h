@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -25,7 +26,9 @@ struct EffectEntry {
 /// The catalogue. τ is the generalised force on the coordinate, + up; w = q̇. Of several
 /// coordinates, visc to lever_inertia, const, torque_from and torque_until are one per coordinate
 /// (knee_angle_r.visc); handforce, spring, mass_from and mass_until are those of one coordinate
-/// only. Of several sensors, bias to drift are one per sensor.
+/// only. Of several sensors, bias to drift are one per sensor. Without muscles, fatigue, delay and
+/// shape are left out, and drive_gain to drive_saturation are one per coordinate that a trial
+/// drives.
 ///
 /// | id | effect | amplitude |
 /// |---|---|---|
@@ -50,6 +53,7 @@ struct EffectEntry {
 /// | fatigue | u_i·[1 − φ(1 − e^{−∫u_i dt/T})], every muscle | φ |
 /// | missing_i | a muscle that the model has but switched off; its lengths within their tolerance | r = F0 over the model's |
 /// | delay, shape, crosstalk_A_B, gain_i, offset_i | EmgMapping | |
+/// | drive_gain, drive_delay, drive_lag, drive_saturation | DriveLaw; the gain of actuators is their optimal force | g, d, lag, a |
 /// | mass, tau, Fmax_i, lopt_i, lslack_i, tendon, wrap_i | factors and shifts of parameters | |
 /// | swap_A_B | channels of two muscles exchanged: EmgMapping | share, 1 where they are |
 /// | saturated_i | the record of a muscle or group saturates (flatTops): EmgMapping | s, 1 goes on smoothly |
@@ -89,6 +93,9 @@ struct CatalogueChoice {
   /// How the coordinates move, which sizes the effects of a model without muscles; empty: as an
   /// elbow does.
   std::map<std::string, MotionSize> motions = {};
+  /// What the trials command of coordinates in question, without muscles. A problem without a
+  /// choice has those of its trials (commandsOf).
+  std::optional<std::vector<DriveCommand>> drives = {};
 };
 
 /// addNuisances, and the entries of the choice; with a formula also addFormula.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bio/discovery/drive_law.h"
 #include "bio/discovery/motion_size.h"
 #include "bio/discovery/sensor_law.h"
 #include "bio/discovery/timed_force.h"
@@ -30,7 +31,8 @@ struct Meaning {
     rate,
     lag,
     drift,
-    timed  ///< of a TimedForce: not a number of the model
+    timed,  ///< of a TimedForce: not a number of the model
+    drive   ///< of a Drive: not a number of the model
   };
   struct Part {
     std::size_t number;
@@ -163,6 +165,11 @@ class EncompassingModel {
   /// F0 becomes negligible and is the number whose index is returned. Its EMG is that of the trial,
   /// or the mean of those of `synergists` (at least one).
   std::size_t addMuscle(std::size_t muscle, std::vector<std::string> synergists);
+  /// Takes what trials command, before the effects of drives. @throws std::invalid_argument if a
+  /// coordinate is not in question
+  void setCommands(const std::vector<DriveCommand>& commands);
+  /// The drive of a coordinate; null: the trials do not drive it.
+  Drive* driveOf(const MovingCoordinate& at);
   void addTimedForce(const TimedForce& force) { timedForces_.push_back(force); }
   /// Latest start and earliest end of the trials [s]: between them timed forces may change.
   void trialsLast(double first, double last);
@@ -196,6 +203,9 @@ class EncompassingModel {
   SensorLaw sensorAt(const Eigen::VectorXd& values, std::size_t sensor = 0) const;
   std::size_t sensorOf(std::size_t quantity) const { return meanings_[quantity].sensor; }
   const std::vector<TimedForce>& timedForces() const { return timedForces_; }
+  const std::vector<Drive>& drives() const { return drives_; }
+  std::vector<DriveCommand> commands() const;
+  DriveLaws driveLawsAt(const Eigen::VectorXd& values) const;
   std::optional<std::size_t> parameterOf(std::size_t quantity) const {
     return meanings_[quantity].parameter;
   }
@@ -242,6 +252,7 @@ class EncompassingModel {
   std::map<std::string, std::string> present_;
   std::vector<Law> laws_;
   std::vector<TimedForce> timedForces_;
+  std::vector<Drive> drives_;
   ConditionQuantities conditions_;
   std::map<std::string, std::vector<std::string>> synergists_;
 };

@@ -8,6 +8,7 @@
 #include "bio/discovery/effects.h"
 #include "bio/discovery/encompassing_model.h"
 #include "bio/observation/nudge.h"
+#include "bio/sensitivity/coupled_sensitivity.h"
 #include "bio/simulation/simulate.h"
 #include "bio/tables/trial.h"
 
@@ -15,7 +16,8 @@ namespace bio::discover {
 
 class SensedMotion;
 
-/// Without CatalogueChoice::sensors the outputs are what the trials measure.
+/// Without CatalogueChoice::sensors the outputs are what the trials measure; without drives they
+/// are those of the trials.
 struct MusculoskeletalProblemOptions : CatalogueChoice {
   SimulationOptions simulation;  ///< integrator: variational or variationalLeft; step
   double latentSpacing = 0.05;   ///< between nodes of the latent force [s] > 0
@@ -170,6 +172,11 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   /// empty if they depend on none.
   Eigen::MatrixXd timedDirections(const OfTrial& trial, const Eigen::VectorXd& values,
                                   const std::vector<std::size_t>& wanted) const;
+  /// ∂(external force) in the wanted quantities of drives, at their places among the columns.
+  std::vector<ExternalSlope> driveSlopes(const OfTrial& trial, const Eigen::VectorXd& values,
+                                         const std::vector<std::size_t>& wanted,
+                                         const std::vector<Eigen::Index>& places,
+                                         const MusculoskeletalSystem& system) const;
   double activationLag() const;
   void addTrial(Trial trial);
   void collectSamples(OfTrial& trial) const;

@@ -40,11 +40,22 @@ struct ExternalNodes {
   }
 };
 
+/// ∂(external force on one coordinate)/∂θ of a parameter that shapes SimulationOptions::
+/// externalForce: linear within each interval between times, where it may jump, and 0 outside them.
+struct ExternalSlope {
+  Eigen::Index column = 0;      ///< of θ among the parameters wanted
+  int coordinate = 0;           ///< index in the skeleton, free or prescribed
+  std::vector<double> times;    ///< [s] strictly rising, at least two
+  Eigen::VectorXd first, last;  ///< where each interval begins and ends [force per unit of θ]
+  double at(double t) const;
+};
+
 struct SensitivityOptions {
   SimulationOptions simulation;  ///< integrator: variational or variationalLeft
   bool muscles = false;          ///< also fibre lengths, activations and tendon forces
   bool reactions = false;        ///< also reactions, for which those of the muscles are needed
   ExternalNodes externalNodes = {};
+  std::vector<ExternalSlope> externalSlopes = {};
 };
 
 /// Simulates the trial and differentiates the discrete motion exactly with respect to parameters.

@@ -36,6 +36,10 @@ void addTimedMasses(EncompassingModel& model);
 void addMissingMuscles(EncompassingModel& model);
 void addDelay(EncompassingModel& model);
 void addShape(EncompassingModel& model);
+void addDriveGain(EncompassingModel& model, const MovingCoordinate& at);
+void addDriveDelay(EncompassingModel& model, const MovingCoordinate& at);
+void addDriveLag(EncompassingModel& model, const MovingCoordinate& at);
+void addDriveSaturation(EncompassingModel& model, const MovingCoordinate& at);
 void addFatigue(EncompassingModel& model);
 void addCrosstalk(EncompassingModel& model);
 void addExchangedChannels(EncompassingModel& model);
@@ -72,6 +76,10 @@ const std::vector<EffectEntry>& effectEntries() {
       {"biarticular", addBiarticularSprings},
       {"timed", addTimedTorques},
       {"timed", addTimedMasses},
+      {"drive_gain", addDriveGain},
+      {"drive_delay", addDriveDelay},
+      {"drive_lag", addDriveLag},
+      {"drive_saturation", addDriveSaturation},
       {"fatigue", addFatigue},
       {"missing", addMissingMuscles},
       {"delay", addDelay},
@@ -138,6 +146,8 @@ EncompassingModel encompassingModel(const Model& model, const SystemOptions& sys
   const std::vector<std::string> without = effectIds(choice.without);
   EncompassingModel encompassing(model, system, coordinates, choice.sensors);
   encompassing.setMotions(choice.motions);
+  if (choice.drives && encompassing.system().numMuscles() == 0)
+    encompassing.setCommands(*choice.drives);
   addNuisances(encompassing);
   addExperimentalConditions(encompassing);
   for (const EffectEntry& entry : effectEntries()) {

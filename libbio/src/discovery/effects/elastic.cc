@@ -24,6 +24,10 @@ std::string limitOf(const EncompassingModel& model, const MovingCoordinate& at) 
   return {};
 }
 
+std::string resistingPart(const EncompassingModel& model) {
+  return model.system().numMuscles() > 0 ? "Passive tissue" : "Something passive";
+}
+
 }  // namespace
 
 void addStiffness(EncompassingModel& model, const MovingCoordinate& at) {
@@ -114,7 +118,7 @@ void addLimits(EncompassingModel& model, const MovingCoordinate& at) {
   }
   model.add(candidateAt(
       model, at, "limit", "passive joint limits",
-      "Passive tissue increasingly resists motion towards both ends of the joint's range.",
+      resistingPart(model) + " increasingly resists motion towards both ends of the joint's range.",
       {K, upper, lower, transition}, starts));
 }
 
@@ -130,9 +134,9 @@ void addExponentialLimits(EncompassingModel& model, const MovingCoordinate& at) 
       model, at,
       {"limit_exp",
        "exponential passive joint limits",
-       fmt::format("Passive tissue resists motion with a {} that grows exponentially "
+       fmt::format("{} resists motion with a {} that grows exponentially "
                    "towards both ends of the joint's range.",
-                   units.word),
+                   resistingPart(model), units.word),
        fmt::format("c*(exp(-k*(q-r+{0}))-exp(k*(q-r-{0})))", 0.5 * span),
        {"c", "k", "r"},
        {amplitude("limit_exp." + units.word, units.force + " half a range from rest", 0, 200 * size,

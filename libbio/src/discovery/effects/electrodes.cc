@@ -14,6 +14,7 @@ using info::discover::EffectKind;
 using What = EmgTarget::What;
 
 void addDelay(EncompassingModel& model) {
+  if (model.system().numMuscles() == 0) return;
   const std::size_t d =
       model.add(amplitude("delay.time", "s", 0, 0.25, 0.05),
                 {Meaning::Kind::shift, {{model.number(EmgTarget{What::delay, ""}, 0)}}});
@@ -24,6 +25,7 @@ void addDelay(EncompassingModel& model) {
 }
 
 void addShape(EncompassingModel& model) {
+  if (model.system().numMuscles() == 0) return;
   const std::size_t A =
       model.add(amplitude("shape.A", "", -6, 4, 1.5),
                 {Meaning::Kind::shift, {{model.number(EmgTarget{What::nonlinearity, ""}, 0)}}});

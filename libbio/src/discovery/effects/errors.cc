@@ -118,7 +118,9 @@ void addNuisances(EncompassingModel& model) {
 
 void addMassError(EncompassingModel& model) {
   if (model.movedBodies().empty()) return;
-  addBeyond(model, model.find(massName), 0.3, "mass", "mass of the limb",
+  const bool hasMuscles = model.system().numMuscles() > 0;
+  addBeyond(model, model.find(massName), 0.3, "mass",
+            hasMuscles ? "mass of the limb" : "mass of the moving bodies",
             "The moving bodies are heavier or lighter than in the model.", {"payload"});
 }
 
@@ -322,12 +324,16 @@ void addSensorErrors(EncompassingModel& model, std::size_t sensor) {
       sizes.biasSd, sizes.biasStart, Meaning::Kind::bias);
   add("gain", "sensor gain", fmt::format("The sensor's reading is a multiple of the {}.", thing),
       "", 0.5, 0.1, 0.02, Meaning::Kind::gain);
-  add("clock", "clock offset", "The sensor's clock is behind that of the EMG.", "s", 0.2, 0.05,
-      0.01, Meaning::Kind::clock,
-      isOne ? std::vector<std::string>{"delay"} : std::vector<std::string>{});
+  const bool hasMuscles = model.system().numMuscles() > 0;
+  const std::string other = hasMuscles               ? "that of the EMG"
+                            : model.drives().empty() ? "the trial's"
+                                                     : "that of the commands";
+  add("clock", "clock offset", "The sensor's clock is behind " + other + ".", "s", 0.2, 0.05, 0.01,
+      Meaning::Kind::clock,
+      isOne && hasMuscles ? std::vector<std::string>{"delay"} : std::vector<std::string>{});
   add("clock_rate", "clock rate",
-      "The sensor's clock is slow relative to that of the EMG (fast if negative): a sample with "
-      "time stamp t was measured at (1 + rate) t.",
+      "The sensor's clock is slow relative to " + other +
+          " (fast if negative): a sample with time stamp t was measured at (1 + rate) t.",
       "", 0.2, 0.03, 0.01, Meaning::Kind::rate);
   add("lag", "sensor lag", fmt::format("The sensor follows the {} with a first-order lag.", thing),
       "s", 0.3, 0.05, 0.01, Meaning::Kind::lag);

@@ -6,6 +6,7 @@
 namespace bio::discover {
 
 void addFatigue(EncompassingModel& model) {
+  if (model.system().numMuscles() == 0) return;
   const std::size_t share = model.add(
       amplitude("fatigue.share", "", 0, 0.9, 0.3),
       {Meaning::Kind::shift, {{model.number(EmgTarget{EmgTarget::What::fatigue, ""}, 0)}}});

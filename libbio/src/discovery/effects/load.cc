@@ -55,9 +55,10 @@ void addTilt(EncompassingModel& model) {
   if (horizontal(model).isZero()) return;
   const std::size_t angle =
       model.add(amplitude("tilt.angle", "rad", -0.5, 0.5, 0.3), {Meaning::Kind::tilt, {}});
-  model.add(candidate(model, "tilt", "tilt of the limb",
-                      "Gravity acts in a different direction than the model assumes: the limb is "
-                      "tilted in the plane of the joint.",
+  const std::string what = model.system().numMuscles() > 0 ? "limb" : "mechanism";
+  model.add(candidate(model, "tilt", "tilt of the " + what,
+                      "Gravity acts in a different direction than the model assumes: the " + what +
+                          " is tilted in the plane of the joint.",
                       info::discover::EffectKind::structure, {angle}, {{0.05}}, {"handforce"}));
 }
 

@@ -30,10 +30,11 @@ class Selection {
       }
       if (!first && simplify()) continue;
       std::vector<std::size_t> list;
-      for (int attempt = 0; attempt < 3; ++attempt) {
+      // a base model that is fitted anew forgets those that contain it
+      for (int attempt = 1;; ++attempt) {
         list = search_.shortlist(chosen_, first ? options_.finalists : 5);
         search_.race(chosen_, list);
-        if (!search_.refitBase(chosen_)) break;
+        if (attempt == 3 || !search_.refitBase(chosen_)) break;
       }
       search_.enforceNesting();
       const Effects before = chosen_;
