@@ -106,7 +106,7 @@ void MjcfReading::readBody(const MjcfChild& child, const std::string& parent, bo
   const std::string childClass = own.empty() ? child.childClass : own;
   const Transform X = child.X * with({child.element, {}, {}}, {}).placement(settings_);
   if (textOf(element, "mocap") == "true") {
-    maker_.isNotSimulated("motion of mocap bodies, which stand still here,", name);
+    maker_.isNotSimulated("motion of mocap bodies, which stand still", name);
   }
   if (documents_.number(element, "gravcomp", Rule::finite, 0.0) != 0) {
     maker_.isNotSimulated("compensation of gravity (gravcomp)", name);

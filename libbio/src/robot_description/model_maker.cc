@@ -82,7 +82,7 @@ std::string ModelMaker::nameFrom(const Element& element, const std::string& name
     const auto byte = static_cast<unsigned char>(c);
     if (std::isspace(byte) || std::iscntrl(byte) || c == '/' || c == ',' || c == '"') c = '_';
   }
-  if (fine == "ground") documents_.fail(element, "is called 'ground', which names the ground");
+  if (fine == "ground") fine = fmt::format("ground_{}", element.Name());  // not the ground itself
   if (fine != name) {
     std::string remark = fmt::format("{} is called '{}'", label(element), fine);
     if (std::find(model_.remarks.begin(), model_.remarks.end(), remark) == model_.remarks.end())
@@ -262,9 +262,8 @@ Model ModelMaker::finished() {
   for (auto& [what, names] : notSimulated_) {
     const std::size_t more = names.size() > mostNames ? names.size() - mostNames : 0;
     names.resize(names.size() - more);
-    model_.warnings.push_back(
-        fmt::format("{} {} not simulated: {}{}", what, what.ends_with("s") ? "are" : "is",
-                    fmt::join(names, ", "), more ? fmt::format(" and {} more", more) : ""));
+    model_.warnings.push_back(fmt::format("not simulated: {} ({}{})", what, fmt::join(names, ", "),
+                                          more ? fmt::format(" and {} more", more) : ""));
   }
   return std::move(model_);
 }

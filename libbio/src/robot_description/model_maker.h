@@ -32,7 +32,7 @@ class ModelMaker {
   explicit ModelMaker(const Documents& documents) : documents_(documents) {}
 
   /// The name of an element as a model can have it: without '/', spaces, quotes and commas, which
-  /// become '_' with a remark.
+  /// become '_' with a remark; "ground" gets an ending.
   std::string nameOf(const Element& element);
   std::string nameFrom(const Element& element, const std::string& name);
   /// FileError if there is a body or a coordinate of the name.
@@ -62,7 +62,7 @@ class ModelMaker {
   void addCoupler(const Element& element, const std::string& dependent,
                   const std::string& independent, const Function& function);
 
-  /// One warning for each `what`, with all the names: "WHAT: a, b".
+  /// One warning for each `what`, with the names: "not simulated: WHAT (a, b)".
   void isNotSimulated(const std::string& what, const std::string& name);
 
   Model& model() { return model_; }

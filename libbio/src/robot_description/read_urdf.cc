@@ -92,6 +92,11 @@ class UrdfReading {
   }
 
   const std::string& rootLink() {
+    // as Drake has it: a world need not be listed
+    for (const UrdfJoint* joint : jointOrder_) {
+      if (joint->parent == "world" && links_.emplace("world", joint->element).second)
+        linkOrder_.insert(linkOrder_.begin(), "world");
+    }
     std::map<std::string, const Element*> movedBy;
     for (const UrdfJoint* joint : jointOrder_) {
       for (const auto& [end, link] :
@@ -174,12 +179,17 @@ class UrdfReading {
     const Element* inertia = inertial->FirstChildElement("inertia");
     if (!inertia && mass.mass > 0) documents_.fail(link, "its inertial has no <inertia>");
     if (inertia) {
-      const auto at = [&](const char* name, Rule rule, std::optional<double> fallback) {
-        return documents_.number(*inertia, name, rule, fallback);
+      const auto moment = [&](const char* name) {
+        const double value = numberOf(link, *inertia, name, Rule::finite);
+        // what rounding leaves of nothing
+        if (value < 0 && value > -1e-15) return 0.0;
+        return documents_.ruled(link, name, value, Rule::notNegative);
       };
-      const double xx = at("ixx", Rule::notNegative, {}), yy = at("iyy", Rule::notNegative, {}),
-                   zz = at("izz", Rule::notNegative, {}), xy = at("ixy", Rule::finite, 0.0),
-                   xz = at("ixz", Rule::finite, 0.0), yz = at("iyz", Rule::finite, 0.0);
+      const auto product = [&](const char* name) {
+        return inertia->Attribute(name) ? numberOf(link, *inertia, name, Rule::finite) : 0.0;
+      };
+      const double xx = moment("ixx"), yy = moment("iyy"), zz = moment("izz");
+      const double xy = product("ixy"), xz = product("ixz"), yz = product("iyz");
       mass.inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
     }
     return mass.placed(originOf(*inertial));
@@ -269,7 +279,7 @@ class UrdfReading {
 
   // q = multiplier·q_other + offset; through joints that follow themselves.
   void couple(const UrdfJoint& joint) {
-    if (!mimicOf(joint)) return;
+    if (!mimicOf(joint) || joint.kind == "fixed") return;
     if (!coordinateOf_.contains(joint.name)) {
       documents_.fail(*joint.element, "has a <mimic>, but is no joint of one coordinate");
     }

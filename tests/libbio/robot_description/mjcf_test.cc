@@ -158,7 +158,7 @@ TEST_F(Mjcf, CoordinatesForcesAndMotorsAreThoseOfTheClassesAndUnits) {
   EXPECT_EQ(model.actuators[2].name, "b_motor");  // the coordinate is called b
   EXPECT_EQ(model.actuators[2].optimalForce, 10);
   EXPECT_THAT(model.warnings,
-              ElementsAre("servos and other actuators than motors are not simulated: servo"));
+              ElementsAre("not simulated: servos and other actuators than motors (servo)"));
   EXPECT_THAT(model.remarks, Contains(HasSubstr("general 'b' at joint 'b' is called 'b_motor'")));
 }
 
@@ -275,8 +275,8 @@ TEST_F(Mjcf, FreeAndBallJointsAreAnglesOfTheSameTurns) {
   EXPECT_EQ(findCoordinate(model, "root_tz").defaultValue, 1.4);
   EXPECT_NEAR(findCoordinate(model, "root_rz").defaultValue, M_PI / 2, 1e-15);
   EXPECT_THAT(model.warnings,
-              ElementsAre("damping of ball and free joints is not simulated: shoulder",
-                          "contacts are not simulated: 2 geoms may touch"));
+              ElementsAre("not simulated: damping of ball and free joints (shoulder)",
+                          "not simulated: contacts (2 geoms may touch)"));
   EXPECT_THAT(model.remarks, ElementsAre(HasSubstr("shoulder_ry must stay within a right angle")));
   const Vector3d x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   movesAsByHand(model, {{-1,
@@ -329,7 +329,7 @@ TEST_F(Mjcf, EqualitiesOfJointsAreCouplersAroundTheirReferences) {
   EXPECT_DOUBLE_EQ(findCoordinate(held, "y").defaultValue, 0.3);
   EXPECT_THAT(modelWith("<joint joint1='y' joint2='x' active='false'/>").couplers, IsEmpty());
   EXPECT_THAT(modelWith("<weld name='grip' body1='a' body2='b'/>").warnings,
-              Contains("constraints are not simulated: weld grip"));
+              Contains("not simulated: constraints (weld grip)"));
 }
 
 TEST_F(Mjcf, IncludedFilesAreReadAsIfTheyStoodThere) {
@@ -356,11 +356,11 @@ TEST_F(Mjcf, WhatWouldActAndIsNotSimulatedIsNamed) {
   EXPECT_EQ(model.gravity, Vector3d(0, 0, 0));
   EXPECT_THAT(
       model.warnings,
-      ElementsAre("a medium's resistance is not simulated: option density",
-                  "compensation of gravity (gravcomp) is not simulated: a",
-                  "the rotors' inertia (armature) is not simulated: x, y",
-                  "tendons are not simulated: string", "motors at no joint are not simulated: m",
-                  "servos and other actuators than motors are not simulated: v, line 5, g"));
+      ElementsAre("not simulated: a medium's resistance (option density)",
+                  "not simulated: compensation of gravity (gravcomp) (a)",
+                  "not simulated: the rotors' inertia (armature) (x, y)",
+                  "not simulated: tendons (string)", "not simulated: motors at no joint (m)",
+                  "not simulated: servos and other actuators than motors (v, line 5, g)"));
 }
 
 }  // namespace

@@ -258,6 +258,24 @@ TEST_F(Urdf, NamesThatTablesCannotHoldAreChangedWithARemark) {
               ElementsAre(HasSubstr("joint 'left/swing one' is called 'left_swing_one'")));
 }
 
+TEST_F(Urdf, AWorldThatIsNoLinkIsTheGroundAsInDrake) {
+  std::string text = doublePendulum;
+  text.erase(text.find("<link name=\"world\"/>"), 21);
+  EXPECT_EQ(read(text), read(doublePendulum));
+}
+
+TEST_F(Urdf, SmallFaultsOfManyFilesAreForgiven) {
+  std::string text = doublePendulum;
+  text.replace(text.find("izz=\"0.003\""), 11, "izz=\"-5e-20\"");
+  text.insert(text.find("</robot>"),
+              "<link name='ground'/><joint name='weld' type='fixed'><parent link='lower'/><child "
+              "link='ground'/><mimic joint='q1'/></joint>");
+  const Model model = read(text);
+  EXPECT_EQ(findBody(model, "lower").inertia[2], 0);
+  EXPECT_EQ(model.bodies.back().name, "ground_link");
+  EXPECT_THAT(model.couplers, IsEmpty());
+}
+
 TEST_F(Urdf, WhatIsWrittenIsAnOpenSimModelThatIsTheSame) {
   const std::string file = folder_.file("arm.urdf", arm);
   const Model model = readOsim(file);
