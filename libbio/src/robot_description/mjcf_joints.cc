@@ -18,7 +18,8 @@ std::vector<Motion> MjcfReading::readJoints(const Element& body, const std::stri
   std::vector<Motion> motions;
   for (const MjcfChild& child : joints) {
     const MjcfElement joint = with(child, {"joint"});
-    const std::string type = joint.text("type", "hinge");
+    const bool isFree = std::string_view(child.element->Name()) == "freejoint";
+    const std::string type = isFree ? "free" : joint.text("type", "hinge");
     const std::string name = jointName(*child.element, bodyName);
     if (type == "hinge" || type == "slide") {
       readHinge(joint, name, type == "hinge", motions);
@@ -28,7 +29,7 @@ std::vector<Motion> MjcfReading::readJoints(const Element& body, const std::stri
     } else if (type == "ball") {
       readBall(joint, name, motions);
       if (child.element->Attribute("name")) joints_[textOf(*child.element, "name")] = {};
-    } else if (type == "free" || std::string_view(child.element->Name()) == "freejoint") {
+    } else if (type == "free") {
       documents_.fail(body, "has joints beside its free joint");
     } else {
       documents_.fail(*child.element,

@@ -81,7 +81,7 @@ TEST_F(Urdf, APendulumHasTheWeightAndInertiaOfItsFormulas) {
 constexpr const char* doublePendulum = R"(<robot name="double">
   <link name="world"/>
   <link name="upper"><inertial><origin xyz="0 0 -0.2"/><mass value="0.6"/>
-    <inertia ixx="0.02" iyy="0.015" izz="0.004" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <inertia ixx="0.02" iyy="0.015" izz="0.006" ixy="0" ixz="0" iyz="0"/></inertial></link>
   <link name="lower"><inertial><origin xyz="0 0 -0.25"/><mass value="0.4"/>
     <inertia ixx="0.01" iyy="0.012" izz="0.003" ixy="0" ixz="0" iyz="0"/></inertial></link>
   <joint name="q1" type="continuous"><parent link="world"/><child link="upper"/><axis xyz="0 1 0"/></joint>
