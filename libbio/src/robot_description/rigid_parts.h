@@ -18,7 +18,7 @@ Transform operator*(const Transform& X_AB, const Transform& X_BC);
 
 /// R = R_x(α) R_y(β) R_z(γ)
 FramePlacement placementOf(const Transform& transform);
-/// Of a turn by roll about x, then pitch about y, then yaw about z of the outer frame.
+/// A turn by roll about x, then by pitch about y, then by yaw about z of the outer frame.
 Eigen::Matrix3d fromRollPitchYaw(const Eigen::Vector3d& rpy);
 /// The smallest turn that carries z to the direction; half a turn about x for −z.
 Eigen::Matrix3d carryingZTo(const Eigen::Vector3d& direction);

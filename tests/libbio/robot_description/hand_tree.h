@@ -100,8 +100,8 @@ inline Dynamics dynamics(const std::vector<Link>& links, const Vector3d& g,
   return sum;
 }
 
-/// The same of a model by Simbody, rows in the order of the links' motions; those that follow
-/// others are left out.
+/// Mass matrix and gravity of a model by Simbody, rows in the order of the links' motions; those
+/// that follow others are left out.
 inline Dynamics dynamics(const bio::Model& model, const std::vector<Link>& links,
                          const std::map<std::string, double>& q) {
   std::vector<std::string> names;

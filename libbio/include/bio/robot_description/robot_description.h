@@ -34,7 +34,7 @@ struct RobotDescription {
 /// @throws FileError if the document breaks a rule of its format, or holds what a model cannot say
 RobotDescription readRobotDescription(const tinyxml2::XMLDocument& document,
                                       const std::filesystem::path& file);
-/// The same of a file.
+/// Parses the file first.
 RobotDescription readRobotDescription(const std::filesystem::path& file);
 
 }  // namespace bio
