@@ -191,6 +191,7 @@ class UrdfReading {
       const double xx = moment("ixx"), yy = moment("iyy"), zz = moment("izz");
       const double xy = product("ixy"), xz = product("ixz"), yz = product("iyz");
       mass.inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+      if (mass.inertia.cwiseAbs().maxCoeff() < 1e-15) mass.inertia.setZero();
     }
     return mass.placed(originOf(*inertial));
   }
