@@ -282,6 +282,7 @@ TEST_F(Urdf, WhatIsWrittenIsAnOpenSimModelThatIsTheSame) {
   const Model model = readOsim(file);
   rewriteOsim(file, model, folder_ / "unchanged.osim");
   EXPECT_EQ(readOsim(folder_ / "unchanged.osim"), model);
+  EXPECT_EQ(modelFormat(folder_ / "unchanged.osim"), ModelFormat::openSim);
   Model changed = model;
   changed.bodies[1].mass = 2.75;
   changed.springForces.push_back({"grease", "lift", 0, 0, 0.4});
