@@ -137,7 +137,7 @@ constexpr const char* arm = R"(<robot name="arm">
     <axis xyz="1 2 -0.5"/><limit effort="10" velocity="3"/></joint>
   <joint name="reach" type="prismatic"><origin xyz="0.3 0 0" rpy="-0.4 0.6 1.9"/><parent link="upper"/><child link="rail"/>
     <axis xyz="0.2 0.3 1"/><limit lower="0" upper="0.4" effort="10" velocity="3"/></joint>
-  <joint name="roll" type="continuous"><origin xyz="0 0 0.2" rpy="0.4 1.5707963267948966 0.4"/><parent link="rail"/><child link="tool"/>
+  <joint name="roll" type="continuous"><origin xyz="0 0 0.2" rpy="1.5707963267948966 0.5 1.5707963267948966"/><parent link="rail"/><child link="tool"/>
     <axis xyz="-1 0 0"/></joint>
 </robot>)";
 
@@ -178,7 +178,7 @@ std::vector<hand::Link> armByHand() {
        tensor(0.004, 0.005, 0.002, 0.0005, 0, -0.0004)},
       {3,
        {0, 0, 0.2},
-       rollPitchYaw(0.4, right, 0.4),
+       rollPitchYaw(right, 0.5, right),
        {{"roll", true, {-1, 0, 0}}},
        0.3,
        {0.01, 0.02, 0.03},
