@@ -142,6 +142,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/path/surface/wrap_cylinder.h
   include/bio/path/surface/wrap_rule.h
   include/bio/path/surface/wrap_sphere.h
+  include/bio/robot_description/robot_description.h
   include/bio/sensitivity/coupled_sensitivity.h
   include/bio/sensitivity/cost_gradient.h
   include/bio/simulation/musculoskeletal_system.h

@@ -40,7 +40,7 @@ class Calibrate : public Command {
   }
 
   void addOptions(CLI::App& options) override {
-    options.add_option("MODEL", model_, "model (.osim)")
+    options.add_option("MODEL", model_, "model (.osim, URDF or MJCF)")
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("");

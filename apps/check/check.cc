@@ -13,6 +13,7 @@
 #include "bio/path/length_jumps.h"
 #include "bio/review/model_review.h"
 #include "bio/review/trial_review.h"
+#include "bio/robot_description/robot_description.h"
 #include "bio/tables/file_error.h"
 #include "bio/tables/recorded_file.h"
 #include "bio/tables/table_file.h"
@@ -87,8 +88,35 @@ bool hasExtension(const std::string& file, const char* extension) {
   return std::filesystem::path(file).extension() == extension;
 }
 
+bool isRobotDescription(const std::string& file) {
+  if (bio::isRecordedFile(file)) return false;
+  try {
+    const bio::ModelFormat format = bio::modelFormat(file);
+    return format == bio::ModelFormat::urdf || format == bio::ModelFormat::mjcf;
+  } catch (const bio::FileError&) {
+    return false;  // whoever reads it says why
+  }
+}
+
+bool isModel(const std::string& file) {
+  return hasExtension(file, ".osim") || hasExtension(file, ".urdf") || isRobotDescription(file);
+}
+
 /// Contents of a file, for the report.
 using Contents = std::vector<ReportPart>;
+
+/// What a robot description became: lines, for people and for summary.json.
+Contents tellTranslation(const std::string& file, nlohmann::ordered_json& translations,
+                         const CommandContext& context) {
+  if (!isRobotDescription(file)) return {};
+  Contents contents;
+  for (const std::string& line : bio::readRobotDescription(file).translated) {
+    if (!context.json && !context.quiet) fmt::print("{}: {}\n", file, line);
+    translations.push_back({{"file", file}, {"translated", line}});
+    contents.push_back(Paragraph{line + "."});
+  }
+  return contents;
+}
 
 Contents checkModel(const std::string& file, const bio::Model& model, Findings& findings) {
   for (const std::string& warning : model.warnings) findings.add(file, "warning", warning);
@@ -199,8 +227,8 @@ class Check : public Command {
     options
         .add_option(
             "FILE", files_,
-            "models (.osim), trials (.sto, .mot, .csv), which are checked against the models, "
-            "recordings (.c3d, .trc, .xdf), and effects of discover --effect (.toml)")
+            "models (.osim, URDF or MJCF), trials (.sto, .mot, .csv), which are checked against "
+            "the models, recordings (.c3d, .trc, .xdf), and effects of discover --effect (.toml)")
         ->required()
         ->check(CLI::ExistingFile)
         ->type_name("");
@@ -217,10 +245,10 @@ class Check : public Command {
     // Models first: a trial is checked against all of them.
     std::vector<bio::Model> models;
     std::vector<std::string> modelFiles;
-    nlohmann::ordered_json recordings = nlohmann::ordered_json::array();
+    nlohmann::ordered_json recordings = nlohmann::ordered_json::array(), translations = recordings;
     const auto checkAll = [&](bool areModels) {
       for (const std::string& file : files_) {
-        if (hasExtension(file, ".osim") != areModels) continue;
+        if (isModel(file) != areModels) continue;
         try {
           if (areModels) {
             bio::Model model = bio::readOsim(file);
@@ -228,12 +256,15 @@ class Check : public Command {
             models.push_back(std::move(model));
             modelFiles.push_back(file);
           }
-          const Contents contents =
-              areModels                     ? checkModel(file, models.back(), findings)
-              : hasExtension(file, ".toml") ? checkEffects(file, models, findings)
-              : bio::isRecordedFile(file)
-                  ? checkRecording(file, findings, summary, recordings, context)
-                  : checkTrial(file, models, findings);
+          Contents contents = areModels ? checkModel(file, models.back(), findings)
+                              : hasExtension(file, ".toml") ? checkEffects(file, models, findings)
+                              : bio::isRecordedFile(file)
+                                  ? checkRecording(file, findings, summary, recordings, context)
+                                  : checkTrial(file, models, findings);
+          if (areModels) {
+            const Contents more = tellTranslation(file, translations, context);
+            contents.insert(contents.end(), more.begin(), more.end());
+          }
           report.details.insert(report.details.end(), contents.begin(), contents.end());
         } catch (const bio::FileError& error) {
           findings.add(file, "error", error.what());
@@ -248,6 +279,7 @@ class Check : public Command {
       if (!why.empty()) limited.push_back(fmt::format("{} ({})", modelFiles[i], why));
     }
     summary.set("not_simulated", limited);
+    if (!translations.empty()) summary.set("robot_descriptions", translations);
     tell(context, findings, limited, summary, report);
     deliver(context, summary, report, folder);
     return findings.count("error") == 0 ? ExitStatus::done : ExitStatus::answerIsNo;

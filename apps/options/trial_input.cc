@@ -32,7 +32,7 @@ void addFileArgument(CLI::App& subcommand, const std::string& name, std::string&
 }  // namespace
 
 void addModelArgument(CLI::App& subcommand, std::string& model) {
-  addFileArgument(subcommand, "MODEL", model, "model (.osim)");
+  addFileArgument(subcommand, "MODEL", model, "model (.osim, URDF or MJCF)");
 }
 
 void addTrialArgument(CLI::App& subcommand, std::string& trial) {

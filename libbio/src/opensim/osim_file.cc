@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bio/robot_description/robot_description.h"
 #include "bio/tables/file_error.h"
 #include "opensim/merge.h"
 #include "opensim/read_model.h"
@@ -18,9 +19,13 @@
 namespace bio {
 namespace {
 
-/// @returns what was changed to bring the file to the form that the reader knows
-std::vector<std::string> parse(tinyxml2::XMLDocument& document, const std::string& text,
-                               const std::string& file) {
+/// What the user should know of how a file became the document that the reader knows.
+struct Parsed {
+  std::vector<std::string> warnings, remarks;
+  bool isTranslated = false;  ///< of a robot description
+};
+
+Parsed parse(tinyxml2::XMLDocument& document, const std::string& text, const std::string& file) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     throw FileError(file + ": is empty, must be an OpenSim model");
   }
@@ -28,8 +33,15 @@ std::vector<std::string> parse(tinyxml2::XMLDocument& document, const std::strin
     throw FileError(fmt::format("{}:{}: is not well-formed XML ({})", file, document.ErrorLineNum(),
                                 tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID())));
   }
+  const ModelFormat format = modelFormat(document);
+  if (format == ModelFormat::urdf || format == ModelFormat::mjcf) {
+    const Model robot = readRobotDescription(document, file).model;
+    document.Clear();
+    osim::buildDocument(document, robot, osim::Format::opensim4);
+    return {robot.warnings, robot.remarks, true};
+  }
   osim::checkVersion(document, file);
-  return osim::update(document, file);
+  return {osim::update(document, file), {}, false};
 }
 
 std::vector<osim::Element*> elementsIn(osim::Element& parent) {
@@ -44,7 +56,8 @@ std::string nameAttribute(const osim::Element& element) {
   return name ? name : "";
 }
 
-/// In every text and coordinate below: "j1/rz" becomes "rz" in its own joint, "/jointset/j1/rz" elsewhere.
+/// In every text and coordinate below: "j1/rz" becomes "rz" in its own joint, "/jointset/j1/rz"
+/// elsewhere.
 void restoreBelow(osim::Element& element, const std::set<std::string>& full, bool inJoint) {
   for (osim::Element* child : elementsIn(element)) {
     const bool isJoint = std::string_view(child->Name()).ends_with("Joint");
@@ -115,9 +128,10 @@ osim::Format formatOf(const tinyxml2::XMLDocument& document) {
 
 Model readOsim(const std::filesystem::path& file) {
   tinyxml2::XMLDocument document;
-  const std::vector<std::string> remarks = parse(document, readTextFile(file), file.string());
+  const Parsed parsed = parse(document, readTextFile(file), file.string());
   Model model = osim::readModel(document, file.string());
-  model.warnings.insert(model.warnings.begin(), remarks.begin(), remarks.end());
+  model.warnings.insert(model.warnings.begin(), parsed.warnings.begin(), parsed.warnings.end());
+  model.remarks.insert(model.remarks.begin(), parsed.remarks.begin(), parsed.remarks.end());
   return model;
 }
 
@@ -150,13 +164,13 @@ void rewriteOsim(const std::filesystem::path& original, const Model& model,
                  const std::filesystem::path& file) {
   const std::string text = readTextFile(original);
   tinyxml2::XMLDocument document, before, after;
-  parse(document, text, original.string());
+  const bool isTranslated = parse(document, text, original.string()).isTranslated;
   const Model old = osim::readModel(document, original.string());
   const osim::Format format = formatOf(document);
   osim::buildDocument(before, old, format);
   osim::buildDocument(after, model, format);
   if (osim::firstDifference(*before.RootElement(), *after.RootElement(), 0).empty()) {
-    writeTextFile(file, text);
+    writeTextFile(file, isTranslated ? print(document) : text);
     return;
   }
   osim::applyChanges(*document.RootElement(), *before.RootElement(), *after.RootElement());

@@ -55,7 +55,9 @@ void checkVersion(const tinyxml2::XMLDocument& document, const std::string& file
   const Element* root = document.RootElement();
   if (!root) throw FileError(file + ": holds no XML element, must be an OpenSim model");
   if (std::string_view(root->Name()) != "OpenSimDocument") {
-    fail(source, *root, fmt::format("root element is {}, must be OpenSimDocument", root->Name()));
+    fail(source, *root,
+         fmt::format("root element is {}, must be OpenSimDocument, robot (URDF) or mujoco (MJCF)",
+                     root->Name()));
   }
   const char* text = root->Attribute("Version");
   const int version = root->IntAttribute("Version", 0);

@@ -259,7 +259,7 @@ class Trial:
         """
 
 def load_model(file: _File) -> Model:
-    """Reads an OpenSim 3 or 4 model (.osim).
+    """Reads an OpenSim 3 or 4 model (.osim), a URDF or an MJCF.
 
     Parameters
     ----------

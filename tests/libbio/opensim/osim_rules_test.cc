@@ -27,8 +27,9 @@ TEST_F(OsimRules, FilesThatAreNoModel) {
   EXPECT_THAT(messageOf("time,BRA\n0,1\n"), HasSubstr("m.osim:"));
   EXPECT_THAT(messageOf(valid.substr(0, valid.size() / 2)), HasSubstr("is not well-formed XML"));
   EXPECT_THAT(messageAfter("</Body>", ""), HasSubstr("is not well-formed XML"));
-  EXPECT_EQ(messageOf("<mujoco/>"),
-            "m.osim:1: mujoco: root element is mujoco, must be OpenSimDocument");
+  EXPECT_EQ(messageOf("<sdf/>"),
+            "m.osim:1: sdf: root element is sdf, must be OpenSimDocument, robot (URDF) or mujoco "
+            "(MJCF)");
   EXPECT_EQ(messageOf("<OpenSimDocument Version=\"40000\"/>"),
             "m.osim:1: OpenSimDocument: holds no Model, must hold one");
   EXPECT_EQ(messageAfter("Version=\"40000\"", "Version=\"four\""),

@@ -6,7 +6,9 @@
 
 namespace bio {
 
-/// Reads an OpenSim 3 (joints nested in bodies) or OpenSim 4 (sockets and offset frames) model.
+/// Reads an OpenSim 3 (joints nested in bodies) or OpenSim 4 (sockets and offset frames) model, or
+/// a robot description (URDF, MJCF), which is translated to an OpenSim 4 document first
+/// (bio/robot_description). The root element says which it is, not the suffix.
 ///
 /// Read are: bodies, joints (Weld, Pin, Slider, Universal, Planar, Gimbal, Free, Custom),
 /// coordinates, CoordinateCouplerConstraint, wrap objects, paths of all muscles, parameters of
@@ -30,7 +32,8 @@ void writeOsim(const Model& model, const std::filesystem::path& file);
 
 /// Writes to `file` a copy of the document `original` that is changed to describe `model`: numbers
 /// that differ are replaced, forces and wrap objects added or removed; all other content (comments,
-/// pictures, controllers, unknown classes) is kept. `file` may be `original`.
+/// pictures, controllers, unknown classes) is kept. `file` may be `original`. If that is a robot
+/// description, the copy is of the OpenSim 4 document to which it was translated.
 /// @throws FileError as the two above
 /// @throws std::invalid_argument if the document cannot express a change
 void rewriteOsim(const std::filesystem::path& original, const Model& model,
