@@ -9,6 +9,7 @@ namespace bio {
 
 void addEmgParameters(const MusculoskeletalSystem& system, const EmgMapping& mapping,
                       ParameterList& list) {
+  if (system.muscles().empty()) return;
   for (const SystemMuscle& muscle : system.muscles()) {
     const auto at = mapping.gain.find(muscle.name);
     const double gain = at == mapping.gain.end() ? 1.0 : at->second;

@@ -105,5 +105,14 @@ TEST(FreeSwing, ReachesItsEndWithEveryIntegrator) {
   }
 }
 
+TEST(FreeSwing, HasNoParametersOfElectrodes) {
+  const Model model = freePendulum(1);
+  const MusculoskeletalSystem system(model, {{{"swing"}, {}}, {}, {}});
+  const ParameterCatalogue all(model, system, {system.skeleton().defaultValues(), {}});
+  for (const ModelParameter& parameter : all.parameters())
+    EXPECT_FALSE(parameter.name.starts_with("emg.")) << parameter.name;
+  EXPECT_NO_THROW(all.find("initial.swing"));
+}
+
 }  // namespace
 }  // namespace bio::discover
