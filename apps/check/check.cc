@@ -88,34 +88,39 @@ bool hasExtension(const std::string& file, const char* extension) {
   return std::filesystem::path(file).extension() == extension;
 }
 
-bool isRobotDescription(const std::string& file) {
-  if (bio::isRecordedFile(file)) return false;
+/// URDF or MJCF by its root element; `none` for every other file.
+bio::ModelFormat robotFormat(const std::string& file) {
+  if (bio::isRecordedFile(file)) return bio::ModelFormat::none;
   try {
     const bio::ModelFormat format = bio::modelFormat(file);
-    return format == bio::ModelFormat::urdf || format == bio::ModelFormat::mjcf;
+    return format == bio::ModelFormat::openSim ? bio::ModelFormat::none : format;
   } catch (const bio::FileError&) {
-    return false;  // whoever reads it says why
+    return bio::ModelFormat::none;  // whoever reads it says why
   }
 }
 
-bool isModel(const std::string& file) {
-  return hasExtension(file, ".osim") || hasExtension(file, ".urdf") || isRobotDescription(file);
-}
+struct CheckedFile {
+  explicit CheckedFile(const std::string& file) : name(file), robot(robotFormat(file)) {}
+  std::string name;
+  bio::ModelFormat robot;
+  bool isModel() const {
+    return hasExtension(name, ".osim") || hasExtension(name, ".urdf") ||
+           robot != bio::ModelFormat::none;
+  }
+};
 
 /// Contents of a file, for the report.
 using Contents = std::vector<ReportPart>;
 
 /// What a robot description became: lines, for people and for summary.json.
-Contents tellTranslation(const std::string& file, nlohmann::ordered_json& translations,
-                         const CommandContext& context) {
-  if (!isRobotDescription(file)) return {};
-  Contents contents;
-  for (const std::string& line : bio::readRobotDescription(file).translated) {
-    if (!context.json && !context.quiet) fmt::print("{}: {}\n", file, line);
-    translations.push_back({{"file", file}, {"translated", line}});
+void tellTranslation(const CheckedFile& file, const bio::Model& model, Contents& contents,
+                     nlohmann::ordered_json& translations, const CommandContext& context) {
+  if (file.robot == bio::ModelFormat::none) return;
+  for (const std::string& line : bio::translationOf(model, file.robot)) {
+    if (!context.json && !context.quiet) fmt::print("{}: {}\n", file.name, line);
+    translations.push_back({{"file", file.name}, {"translated", line}});
     contents.push_back(Paragraph{line + "."});
   }
-  return contents;
 }
 
 Contents checkModel(const std::string& file, const bio::Model& model, Findings& findings) {
@@ -246,9 +251,11 @@ class Check : public Command {
     std::vector<bio::Model> models;
     std::vector<std::string> modelFiles;
     nlohmann::ordered_json recordings = nlohmann::ordered_json::array(), translations = recordings;
+    const std::vector<CheckedFile> all(files_.begin(), files_.end());
     const auto checkAll = [&](bool areModels) {
-      for (const std::string& file : files_) {
-        if (isModel(file) != areModels) continue;
+      for (const CheckedFile& each : all) {
+        if (each.isModel() != areModels) continue;
+        const std::string& file = each.name;
         try {
           if (areModels) {
             bio::Model model = bio::readOsim(file);
@@ -261,10 +268,7 @@ class Check : public Command {
                               : bio::isRecordedFile(file)
                                   ? checkRecording(file, findings, summary, recordings, context)
                                   : checkTrial(file, models, findings);
-          if (areModels) {
-            const Contents more = tellTranslation(file, translations, context);
-            contents.insert(contents.end(), more.begin(), more.end());
-          }
+          if (areModels) tellTranslation(each, models.back(), contents, translations, context);
           report.details.insert(report.details.end(), contents.begin(), contents.end());
         } catch (const bio::FileError& error) {
           findings.add(file, "error", error.what());

@@ -164,10 +164,9 @@ std::string manualPage(const DescribedCommand& program, const std::string& versi
   }
   text +=
       ".SH DESCRIPTION\nReads a musculoskeletal model (OpenSim's .osim; robots in URDF or MJCF) "
-      "and recorded "
-      "muscle excitations, predicts how the limb moves, and determines what the measured motion "
-      "says "
-      "about the model. Everything is in SI units and radians; angles on the command line are "
+      "and recorded muscle excitations, predicts how the limb moves, and determines what the "
+      "measured motion says about the model. Everything is in SI units and radians; angles on the "
+      "command line are "
       "degrees when they end in \\(lqdeg\\(rq.\n.SH SUBCOMMANDS\n";
   for (const DescribedCommand& command : program.subcommands) {
     text += subcommandSection(program, command);

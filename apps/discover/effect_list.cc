@@ -53,12 +53,10 @@ ExitStatus listEffects(const CommandContext& context, const std::string& file,
   chooseCoordinates(simulation, model, {});
   movableSystem(model, file, simulation, summary);  // warns and refuses as a search would
   const bio::discover::CoordinateNames coordinates = coordinatesInQuestion(simulation, {});
-  // no trial says which coordinates are driven: any may be
-  std::vector<bio::discover::DriveCommand> drives;
-  for (const std::string& name : coordinates.all) drives.push_back({name, 1});
   const bio::discover::EncompassingModel encompassing = bio::discover::encompassingModel(
       model, systemOptions(simulation), coordinates,
-      {.own = bio::discover::readUserEffects(own), .drives = std::move(drives)});
+      {.own = bio::discover::readUserEffects(own),
+       .drives = bio::discover::possibleCommands(coordinates.all)});
   if (context.json) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const Candidate& candidate : encompassing.candidates())

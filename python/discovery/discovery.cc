@@ -144,13 +144,12 @@ py::object listEffects(const bio::Model& model, const Names& coordinate,
                        const std::map<std::string, double>& lock, const OwnEffects& own) {
   const SystemChoice choice = systemChoice(model, {}, coordinate, lock, "vi", {});
   std::optional<bio::discover::EncompassingModel> encompassing;
-  bio::discover::CatalogueChoice catalogue{.own = effectsIn(own)};
-  catalogue.drives.emplace();  // no trial says which coordinates are driven: any may be
-  for (const std::string& name : bio::discover::CoordinateNames(inQuestion(choice, {})).all)
-    catalogue.drives->push_back({name, 1});
+  const bio::discover::CoordinateNames coordinates = inQuestion(choice, {});
+  const bio::discover::CatalogueChoice catalogue{
+      .own = effectsIn(own), .drives = bio::discover::possibleCommands(coordinates.all)};
   interruptible([&](const std::atomic<bool>&) {
-    encompassing.emplace(bio::discover::encompassingModel(model, choice.systemOptions(),
-                                                          inQuestion(choice, {}), catalogue));
+    encompassing.emplace(
+        bio::discover::encompassingModel(model, choice.systemOptions(), coordinates, catalogue));
   });
   py::list effects;
   for (const info::discover::Candidate& candidate : encompassing->candidates()) {

@@ -14,40 +14,31 @@ import pathlib
 import subprocess
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "discovery"))
+import mechanisms  # pylint: disable=wrong-import-position
+
 TOP = pathlib.Path(__file__).resolve().parents[2]
-GRAVITY = 9.81
 ARMS = {  # (mass [kg], its centre [m] from the joint, inertia about that [kg m^2], length [m], viscosity [N m s/rad]), as the authors estimated
     1: [(0.1478, 0.1476, 1.09e-4, 0, 2.24e-4)],
     2: [(0.0938, 0.1086, 4.4e-4, 0.1727, 2.4e-4), (0.1376, 0.1168, 1.27e-3, 0, 1e-5)],
     3: [(0.2582, 0.1600, 1e-4, 0.1728, 1.5e-3), (0.2794, 0.2029, 3e-4, 0.2287, 3e-4), (0.1186, 0.1837, 2e-4, 0, 1e-5)],
 }
 PREFIX = {1: "single", 2: "double", 3: "triple"}
-EVERY = {1: 5, 2: 5, 3: 5}
+EVERY = 5
 NAMES = {1: ["swing"], 2: ["upper", "lower"], 3: ["upper", "middle", "lower"]}
 
 
 def model(arms, heavier, has_friction):
-    bodies = joints = forces = ""
-    parent, offset = "/ground", 0
-    for name, (mass, centre, inertia, length, viscosity) in zip(NAMES[len(arms)], arms):
-        i = inertia * heavier
-        bodies += (f'<Body name="{name}_arm"><mass>{mass * heavier!r}</mass><mass_center>0 {-centre!r} 0</mass_center><inertia>{i!r} {i!r} {i!r} 0 0 0</inertia></Body>')
-        joints += (f'<PinJoint name="{name}_joint"><socket_parent_frame>end</socket_parent_frame><socket_child_frame>/bodyset/{name}_arm</socket_child_frame>'
-                   f'<frames><PhysicalOffsetFrame name="end"><socket_parent>{parent}</socket_parent><translation>0 {-offset!r} 0</translation></PhysicalOffsetFrame></frames>'
-                   f'<coordinates><Coordinate name="{name}"><default_value>0</default_value><range>-12.6 12.6</range></Coordinate></coordinates></PinJoint>')
-        if has_friction:
-            forces += (f'<SpringGeneralizedForce name="{name}_friction"><coordinate>{name}</coordinate><stiffness>0</stiffness><rest_length>0</rest_length>'
-                       f'<viscosity>{viscosity * heavier!r}</viscosity></SpringGeneralizedForce>')
-        parent, offset = f"/bodyset/{name}_arm", length
-    return (f'<?xml version="1.0" encoding="UTF-8"?><OpenSimDocument Version="40000"><Model name="pendulum"><gravity>0 {-GRAVITY} 0</gravity>'
-            f'<BodySet><objects>{bodies}</objects></BodySet><JointSet><objects>{joints}</objects></JointSet><ForceSet><objects>{forces}</objects></ForceSet></Model></OpenSimDocument>')
+    links = [mechanisms.Link(name, f"{name}_arm", mass * heavier, centre, inertia * heavier, length, f"{name}_friction" if has_friction else "", viscosity * heavier)
+             for name, (mass, centre, inertia, length, viscosity) in zip(NAMES[len(arms)], arms)]
+    return mechanisms.osim("pendulum", links, limit=12.6)
 
 
 def convert(recorded, path, arms, seconds):
     """Degrees, of the first from hanging down and of each other from the one before."""
     rows = [[float(cell) for cell in line.split(",")] for line in recorded.read_text().split()[1:]]
     lines = ["time," + ",".join(f"{name}_deg" for name in NAMES[arms])]
-    for row in rows[::EVERY[arms]]:
+    for row in rows[::EVERY]:
         if seconds and row[0] > seconds:
             break
         turns = [math.pi, *row[1:arms + 1]]

@@ -147,6 +147,12 @@ std::vector<DriveCommand> commandsOf(const std::vector<Trial>& trials,
   return commands;
 }
 
+std::vector<DriveCommand> possibleCommands(const std::vector<std::string>& names) {
+  std::vector<DriveCommand> commands;
+  for (const std::string& name : names) commands.push_back({name, 1, {}});
+  return commands;
+}
+
 DriveLaw driveLaw(const Drive& drive, const VectorXd& values) {
   DriveLaw law;
   const auto set = [&](double& number, const std::optional<std::size_t>& quantity) {

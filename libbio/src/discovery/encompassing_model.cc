@@ -64,13 +64,6 @@ void EncompassingModel::setMotions(const std::map<std::string, MotionSize>& moti
   }
 }
 
-std::map<std::string, MotionSize> EncompassingModel::motions() const {
-  std::map<std::string, MotionSize> motions;
-  for (const MovingCoordinate& at : coordinates_)
-    if (at.seen.speed > 0) motions[at.coordinate.name] = at.seen;
-  return motions;
-}
-
 bool EncompassingModel::knows(const std::string& id) const {
   return std::any_of(candidates_.begin(), candidates_.end(), [&](const Candidate& candidate) {
     return candidate.id == id || candidate.id.ends_with("." + id);
@@ -158,12 +151,6 @@ Drive* EncompassingModel::driveOf(const MovingCoordinate& at) {
   for (Drive& drive : drives_)
     if (drive.command.coordinate == at.coordinate.name) return &drive;
   return nullptr;
-}
-
-std::vector<DriveCommand> EncompassingModel::commands() const {
-  std::vector<DriveCommand> commands;
-  for (const Drive& drive : drives_) commands.push_back(drive.command);
-  return commands;
 }
 
 DriveLaws EncompassingModel::driveLawsAt(const VectorXd& values) const {

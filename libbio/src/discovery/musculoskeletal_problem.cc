@@ -106,12 +106,14 @@ namespace {
 
 /// With what the trials measure as outputs, what they command and how they saw it move, unless
 /// these are chosen.
-CatalogueChoice withOutputs(CatalogueChoice choice, const std::vector<Trial>& trials,
-                            const SystemOptions& system, const CoordinateNames& coordinates) {
-  if (!choice.drives) choice.drives = commandsOf(trials, coordinates.all);
-  if (choice.sensors.empty()) choice.sensors = measuredOutputs(trials, system, coordinates.all);
-  if (choice.motions.empty()) choice.motions = motionSizes(trials, coordinates.all);
-  return choice;
+MusculoskeletalProblemOptions ofTrials(MusculoskeletalProblemOptions options,
+                                       const std::vector<Trial>& trials,
+                                       const SystemOptions& system,
+                                       const CoordinateNames& coordinates) {
+  if (!options.drives) options.drives = commandsOf(trials, coordinates.all);
+  if (options.sensors.empty()) options.sensors = measuredOutputs(trials, system, coordinates.all);
+  if (options.motions.empty()) options.motions = motionSizes(trials, coordinates.all);
+  return options;
 }
 
 }  // namespace
@@ -120,9 +122,8 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
                                                const CoordinateNames& coordinates,
                                                std::vector<Trial> trials,
                                                MusculoskeletalProblemOptions options)
-    : encompassing_(encompassingModel(model, withTables(system), coordinates,
-                                      withOutputs(options, trials, system, coordinates))),
-      options_(std::move(options)),
+    : options_(ofTrials(std::move(options), trials, system, coordinates)),
+      encompassing_(encompassingModel(model, withTables(system), coordinates, options_)),
       quantities_(encompassing_.quantities()),
       nuisances_(encompassing_.nuisances()) {
   if (trials.empty()) throw std::invalid_argument("no trial is given, must have at least one");
@@ -332,8 +333,6 @@ std::unique_ptr<info::discover::DiscoveryProblem> MusculoskeletalProblem::withFo
   MusculoskeletalProblemOptions options = options_;
   options.formula = terms;
   options.formulaAxis = axis;
-  options.sensors = encompassing_.sensors();
-  options.motions = encompassing_.motions();
   for (std::size_t c = 0; c < candidates().size(); ++c) {
     if (std::find(kept.begin(), kept.end(), c) == kept.end())
       options.without.push_back(candidates()[c].id);

@@ -35,25 +35,22 @@ double PredictedExperiment::least() const {
   return nats.empty() ? 0 : *std::min_element(nats.begin(), nats.end());
 }
 
-std::vector<PredictedExperiment> predictExperiments(const Model& model, const SystemOptions& system,
-                                                    const Trial& trial,
-                                                    const MusculoskeletalProblemOptions& options,
+std::vector<PredictedExperiment> predictExperiments(const Trial& trial,
                                                     const MusculoskeletalProblem& data,
                                                     const info::discover::Verdict& verdict) {
   std::vector<PredictedExperiment> predictedExperiments;
   if (verdict.rivals.size() < 2) return predictedExperiments;
   const EncompassingModel& encompassing = data.encompassing();
-  const std::vector<std::string> coordinates = encompassing.coordinateNames();
-  std::vector<PlannedExperiment> experiments = plannedExperiments(trial, data.encompassing());
-  for (PlannedExperiment& experiment : passiveMotions(trial, data.encompassing()))
+  std::vector<PlannedExperiment> experiments = plannedExperiments(trial, encompassing);
+  for (PlannedExperiment& experiment : passiveMotions(trial, encompassing))
     experiments.push_back(std::move(experiment));
-  MusculoskeletalProblemOptions same = options;
-  same.drives = encompassing.commands();
   for (const PlannedExperiment& experiment : experiments) {
-    const MusculoskeletalProblem planned(model, system, coordinates, {experiment.trial}, same);
+    const MusculoskeletalProblem planned(encompassing.base(), encompassing.systemOptions(),
+                                         encompassing.coordinateNames(), {experiment.trial},
+                                         data.options());
     // where the system would go
     Eigen::VectorXd values = info::discover::nominalValues(planned);
-    const auto own = static_cast<Index>(data.encompassing().quantities().size());
+    const auto own = static_cast<Index>(encompassing.quantities().size());
     values.head(own) = verdict.values.head(own);
     const Eigen::VectorXd motion = planned.outputs(0, values, {});
     if (!motion.allFinite() || !staysInRange(planned, motion)) continue;

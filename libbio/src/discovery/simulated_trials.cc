@@ -85,6 +85,17 @@ double actuatorGain(const AppliedForce& applied, const MusculoskeletalSystem& sy
   return 1;
 }
 
+/// ∂τ′ in a quantity of the drive where each interval of the course begins and ends.
+std::pair<VectorXd, VectorXd> slopesIn(const DrivenCourse& course, const Drive& drive,
+                                       std::size_t quantity) {
+  if (quantity == drive.delay) return {course.inDelay, course.inDelay};
+  const VectorXd& corners = quantity == drive.gain    ? course.inGain
+                            : quantity == drive.lag   ? course.inLag
+                            : quantity == drive.share ? course.inShare
+                                                      : course.inLimit;
+  return {corners.head(corners.size() - 1), corners.tail(corners.size() - 1)};
+}
+
 }  // namespace
 
 std::vector<ExternalSlope> MusculoskeletalProblem::driveSlopes(
@@ -92,29 +103,18 @@ std::vector<ExternalSlope> MusculoskeletalProblem::driveSlopes(
     const std::vector<Index>& places, const MusculoskeletalSystem& system) const {
   std::vector<ExternalSlope> slopes;
   for (const Drive& drive : encompassing_.drives()) {
+    const auto isIn = [&](std::size_t quantity) { return drive.owns(quantity); };
+    if (std::none_of(wanted.begin(), wanted.end(), isIn)) continue;
     const int coordinate = encompassing_.system().skeleton().indexOf(drive.command.coordinate);
     for (const AppliedForce& applied : trial.trial.applied) {
       if (applied.coordinate != drive.command.coordinate) continue;
-      std::optional<DrivenCourse> course;
-      const auto add = [&](std::size_t j, const VectorXd& first, const VectorXd& last) {
-        const double gain = actuatorGain(applied, system);
-        slopes.push_back({places[j], coordinate, course->times, gain * first, gain * last});
-      };
+      const double gain = actuatorGain(applied, system);
+      const DrivenCourse course =
+          drivenCourse(trial.trial.times, applied.values, driveLaw(drive, values));
       for (std::size_t j = 0; j < wanted.size(); ++j) {
-        const std::size_t q = wanted[j];
-        if (q >= encompassing_.quantities().size() ||
-            encompassing_.kindOf(q) != Meaning::Kind::drive)
-          continue;
-        if (!course)
-          course = drivenCourse(trial.trial.times, applied.values, driveLaw(drive, values));
-        const auto addCorners = [&](const VectorXd& slope) {
-          add(j, slope.head(slope.size() - 1), slope.tail(slope.size() - 1));
-        };
-        if (q == drive.gain) addCorners(course->inGain);
-        if (q == drive.lag) addCorners(course->inLag);
-        if (q == drive.share) addCorners(course->inShare);
-        if (q == drive.limit) addCorners(course->inLimit);
-        if (q == drive.delay) add(j, course->inDelay, course->inDelay);
+        if (!isIn(wanted[j])) continue;
+        const auto [first, last] = slopesIn(course, drive, wanted[j]);
+        slopes.push_back({places[j], coordinate, course.times, gain * first, gain * last});
       }
     }
   }

@@ -245,14 +245,8 @@ DiscoveryResult discover(const DiscoveryRequest& request) {
   result.fitted = fittedNumbers(data, verdict);
   verdict.sentence += refitSentence(data, verdict, result.fitted);
   verdict.sentence += remainderSentence(data, verdict);
-  if (verdict.reached == Stage::finished) {
-    MusculoskeletalProblemOptions options = request.problem;
-    options.simulation.step = data.options().simulation.step;
-    options.sensors = data.encompassing().sensors();
-    options.motions = data.encompassing().motions();
-    result.experiments =
-        predictExperiments(request.model, request.system, data.trial(0), options, data, verdict);
-  }
+  if (verdict.reached == Stage::finished)
+    result.experiments = predictExperiments(data.trial(0), data, verdict);
   return result;
 }
 

@@ -35,7 +35,7 @@ Parsed parse(tinyxml2::XMLDocument& document, const std::string& text, const std
   }
   const ModelFormat format = modelFormat(document);
   if (format == ModelFormat::urdf || format == ModelFormat::mjcf) {
-    const Model robot = readRobotDescription(document, file).model;
+    const Model robot = readRobotDescription(document, file);
     document.Clear();
     osim::buildDocument(document, robot, osim::Format::opensim4);
     return {robot.warnings, robot.remarks, true};

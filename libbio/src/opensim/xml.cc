@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <string_view>
+
+#include "tables/cells.h"
 
 namespace bio::osim {
 namespace {
@@ -39,10 +40,8 @@ std::string located(const Source& source, const Element& element, const std::str
 double parseNumber(const Source& source, const Element& object, const Element& element,
                    std::string_view token, const char* unit) {
   const char* property = element.Name();
-  const std::string_view digits = token.starts_with('+') ? token.substr(1) : token;
   double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size()) {
+  if (!tables::isNumber(token, value)) {
     throw UnreadableNumber(located(
         source, object, fmt::format("{} = '{}', must be a number", property, token), element));
   }

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 
 #include "bio/tables/file_error.h"
+#include "tables/cells.h"
 #include "tables/text_file.h"
 
 namespace bio::robot {
@@ -94,10 +94,8 @@ std::vector<double> Documents::numbers(const Element& element, const char* attri
        at = text.find_first_not_of(spaces, at)) {
     const std::size_t end = std::min(text.find_first_of(spaces, at), text.size());
     const std::string_view token = text.substr(at, end - at);
-    const std::string_view digits = token.starts_with('+') ? token.substr(1) : token;
     double value = 0;
-    const auto [last, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || last != digits.data() + digits.size() || !std::isfinite(value)) {
+    if (!tables::isNumber(token, value) || !std::isfinite(value)) {
       fail(element, fmt::format("{} = '{}', must be a finite number", attribute, token));
     }
     values.push_back(value);

@@ -12,7 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The speed at which dry friction is four fifths of its full size, as in discover's `coulomb`.
+/// The speed [rad/s] or [m/s] at which dry friction has three quarters of its full size; neither
+/// format has one. That of discover's `coulomb` in models with muscles.
 constexpr double restSpeed = 0.05;
 /// So many names stand in a warning.
 constexpr std::size_t mostNames = 8;
@@ -91,36 +92,36 @@ std::string ModelMaker::nameFrom(const Element& element, const std::string& name
   return fine;
 }
 
-void ModelMaker::requireNewBody(const Element& element, const std::string& name) {
-  const auto [found, isNew] = bodyElements_.emplace(name, &element);
-  if (!isNew || !bodies_.insert(name).second) {
-    documents_.fail(element, fmt::format("is a second part called '{}' (the first is in line {}), "
+void ModelMaker::requireNew(const Element& element, const char* what, const std::string& name,
+                            Named& named) {
+  const auto [found, isNew] = named.elements.emplace(name, &element);
+  if (!isNew || !named.names.insert(name).second) {
+    documents_.fail(element, fmt::format("is a second {} called '{}' (the first is in line {}), "
                                          "names must be unique",
-                                         name, found->second->GetLineNum()));
+                                         what, name, found->second->GetLineNum()));
   }
+}
+
+void ModelMaker::requireNewBody(const Element& element, const std::string& name) {
+  requireNew(element, "part", name, bodies_);
 }
 
 void ModelMaker::requireNewCoordinate(const Element& element, const std::string& name) {
-  const auto [found, isNew] = coordinateElements_.emplace(name, &element);
-  if (!isNew || !coordinates_.insert(name).second) {
-    documents_.fail(element, fmt::format("is a second joint called '{}' (the first is in line "
-                                         "{}), names must be unique",
-                                         name, found->second->GetLineNum()));
-  }
+  requireNew(element, "joint", name, coordinates_);
 }
 
 std::string ModelMaker::newBodyName(const std::string& wanted) {
-  return newAmong(bodies_, wanted, reserved_);
+  return newAmong(bodies_.names, wanted, reserved_);
 }
 
 std::string ModelMaker::newCoordinateName(const std::string& wanted) {
-  return newAmong(coordinates_, wanted, reserved_);
+  return newAmong(coordinates_.names, wanted, reserved_);
 }
 
 std::string ModelMaker::newForceName(const std::string& wanted) {
   // a column of a trial that is called as a coordinate is its measurement
   std::string name = wanted;
-  while (coordinates_.contains(name)) name += "_motor";
+  while (coordinates_.names.contains(name)) name += "_motor";
   return newAmong(forces_, name);
 }
 

@@ -70,14 +70,19 @@ class ModelMaker {
   Model finished();
 
  private:
+  struct Named {
+    std::set<std::string> names;
+    std::map<std::string, const Element*> elements;  ///< of those that the file names
+  };
+  void requireNew(const Element& element, const char* what, const std::string& name, Named& named);
   void joinGroup(const std::string& parent, const Transform& X_PB, const std::string& body,
                  const std::vector<Motion>& group, const std::string& name);
   std::string newForceName(const std::string& wanted);
 
   const Documents& documents_;
   Model model_;
-  std::set<std::string> bodies_, coordinates_, joints_, forces_;
-  std::map<std::string, const Element*> bodyElements_, coordinateElements_;
+  Named bodies_, coordinates_;
+  std::set<std::string> joints_, forces_;
   std::set<std::string> coupled_, reserved_;
   std::vector<std::pair<std::string, std::vector<std::string>>> notSimulated_;
 };

@@ -43,7 +43,33 @@ std::string countOf(std::size_t number, const char* one, const char* many) {
   return fmt::format("{} {}", number, number == 1 ? one : many);
 }
 
-std::vector<std::string> wordsOf(const Model& model, bool isUrdf) {
+}  // namespace
+
+ModelFormat modelFormat(const tinyxml2::XMLDocument& document) {
+  return document.RootElement() ? formatCalled(document.RootElement()->Name()) : ModelFormat::none;
+}
+
+ModelFormat modelFormat(const std::filesystem::path& file) {
+  return formatCalled(rootIn(readTextFile(file)));
+}
+
+Model readRobotDescription(const tinyxml2::XMLDocument& document,
+                           const std::filesystem::path& file) {
+  const ModelFormat format = modelFormat(document);
+  if (format != ModelFormat::urdf && format != ModelFormat::mjcf) {
+    throw FileError(
+        fmt::format("{}: is no robot description, its root element must be robot "
+                    "(URDF) or mujoco (MJCF)",
+                    file.string()));
+  }
+  const robot::Documents documents(document, file);
+  const robot::Element& root = *document.RootElement();
+  return format == ModelFormat::urdf ? robot::readUrdf(documents, root)
+                                     : robot::readMjcf(documents, root);
+}
+
+std::vector<std::string> translationOf(const Model& model, ModelFormat format) {
+  const bool isUrdf = format == ModelFormat::urdf;
   std::size_t coordinates = 0, massless = 0;
   for (const Joint& joint : model.joints) coordinates += joint.coordinates.size();
   for (const Body& body : model.bodies) massless += body.mass > 0 ? 0 : 1;
@@ -65,44 +91,6 @@ std::vector<std::string> wordsOf(const Model& model, bool isUrdf) {
       model.gravity.x(), model.gravity.y(), model.gravity.z());
   if (isUrdf) second += "; the root link stands on the ground";
   return {std::move(first), std::move(second)};
-}
-
-}  // namespace
-
-ModelFormat modelFormat(const tinyxml2::XMLDocument& document) {
-  return document.RootElement() ? formatCalled(document.RootElement()->Name()) : ModelFormat::none;
-}
-
-ModelFormat modelFormat(const std::filesystem::path& file) {
-  return formatCalled(rootIn(readTextFile(file)));
-}
-
-RobotDescription readRobotDescription(const tinyxml2::XMLDocument& document,
-                                      const std::filesystem::path& file) {
-  const bool isUrdf = modelFormat(document) == ModelFormat::urdf;
-  if (!isUrdf && modelFormat(document) != ModelFormat::mjcf) {
-    throw FileError(
-        fmt::format("{}: is no robot description, its root element must be robot "
-                    "(URDF) or mujoco (MJCF)",
-                    file.string()));
-  }
-  const robot::Documents documents(document, file);
-  const robot::Element& root = *document.RootElement();
-  RobotDescription description;
-  description.model = isUrdf ? robot::readUrdf(documents, root) : robot::readMjcf(documents, root);
-  description.translated = wordsOf(description.model, isUrdf);
-  return description;
-}
-
-RobotDescription readRobotDescription(const std::filesystem::path& file) {
-  const std::string text = readTextFile(file);
-  tinyxml2::XMLDocument document;
-  if (document.Parse(text.c_str(), text.size()) != tinyxml2::XML_SUCCESS) {
-    throw FileError(fmt::format("{}:{}: is not well-formed XML ({})", file.string(),
-                                document.ErrorLineNum(),
-                                tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID())));
-  }
-  return readRobotDescription(document, file);
 }
 
 }  // namespace bio

@@ -12,6 +12,13 @@
 #include "tables/text_file.h"
 
 namespace bio::tables {
+
+bool isNumber(std::string_view digits, double& value) {
+  if (digits.starts_with('+')) digits.remove_prefix(1);
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  return error == std::errc() && end == digits.data() + digits.size() && !digits.empty();
+}
+
 namespace {
 
 bool isWhite(char c) {
@@ -46,12 +53,6 @@ std::size_t endOfQuoted(std::string_view line, std::size_t open, char mark) {
     if (behind == line.npos || line[behind] == mark) return behind;
   }
   return open;  // is not closed
-}
-
-bool isNumber(std::string_view digits, double& value) {
-  if (digits.starts_with('+')) digits.remove_prefix(1);
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  return error == std::errc() && end == digits.data() + digits.size() && !digits.empty();
 }
 
 // "12,345": a whole number of one to three digits, not 0, before the comma, three behind it.

@@ -39,6 +39,9 @@ class Lines {
   int number_ = 0;
 };
 
+/// Whether the text is one number with a decimal point, and its value; "+2" and infinite ones are.
+bool isNumber(std::string_view digits, double& value);
+
 enum class Separator { comma, semicolon, tab, space };
 
 /// The cells of a line, trimmed and without their quotes, which protect separators; the separator

@@ -180,4 +180,18 @@ TEST(DesignOfChannels, TellsTwoEffectsApartBySeveralChannels) {
   EXPECT_GT(two["nats_before"]["shoulder_elv.visc"], 0);
 }
 
+// A robot at rest tells nothing; pushed along its rail it does.
+TEST(DesignOfChannels, SaysThatATrialAtRestDeterminesNothing) {
+  const ScratchFolder scratch;
+  const std::string rest = (scratch / "rest.csv").string();
+  std::ofstream(rest) << "time,cart_x,link1,link2\n0,0,0,0\n1,0,0,0\n2,0,0,0\n";
+  const ProgramResult result = support::runFisherHill(
+      {"design", "models/robots/cart_double_pendulum.osim", rest, "--torque", "cart_x=5",
+       "--torque", "link1=0", "--torque", "link2=0", "--parameters", "link1.mass", "--observe",
+       "link1=0.2deg", "--candidates", "10", "--generations", "0"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out,
+              HasSubstr("(Cramér–Rao bound), which " + rest + " does not determine at all."));
+}
+
 }  // namespace

@@ -169,7 +169,7 @@ TEST(DriveEffects, ChangeNothingWhereTheyAreAbsent) {
 TEST(DriveEffects, DerivativesMatchDifferencesOfWholeSimulations) {
   for (const double optimalForce : {0.0, 2.5}) {
     DrivenCase driven({drivenSwing(3, {}, 1, optimalForce)}, optimalForce);
-    const double most = driven.data->encompassing().commands().at(0).largest;
+    const double most = driven.data->encompassing().drives().at(0).command.largest;
     // together, so that each sees the others
     driven.put("drive_gain", {1.3});
     driven.put("drive_delay", {0.0131});

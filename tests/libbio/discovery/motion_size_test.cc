@@ -10,6 +10,7 @@
 #include <string>
 
 #include "bio/discovery/effects.h"
+#include "bio/discovery/musculoskeletal_problem.h"
 #include "libbio/discovery/free_swing.h"
 
 namespace bio::discover {
@@ -86,10 +87,13 @@ TEST(MotionSize, ScalesWhatResistsAPendulum) {
   EXPECT_NEAR(priorSd(fast, "coulomb.speed"), 10 * priorSd(slow, "coulomb.speed"), 1e-12);
 }
 
-TEST(MotionSize, IsPassedOn) {
-  const EncompassingModel model = catalogueFor({0.5, 0.3});
-  EXPECT_EQ(model.motions().at("swing").speed, 0.5);
-  EXPECT_EQ(model.motions().at("swing").spread, 0.3);
+TEST(MotionSize, IsPassedOnByAProblem) {
+  const MusculoskeletalProblem data(freePendulum(1), SystemOptions{{{"swing"}, {}}, {}, {}},
+                                    "swing", {wave(0.4, 1, 200, 0)});
+  const MotionSize& seen = data.options().motions.at("swing");
+  EXPECT_GT(seen.speed, 0);
+  EXPECT_EQ(data.encompassing().coordinates().front().seen.speed, seen.speed);
+  EXPECT_EQ(data.encompassing().coordinates().front().seen.spread, seen.spread);
 }
 
 }  // namespace

@@ -143,8 +143,7 @@ struct Arms {
                           info::discover::nominalValues(data), {}, {15, 0.1});
   }
   std::vector<PredictedExperiment> told(const info::discover::Verdict& verdict) const {
-    return predictExperiments(elbow.model, ShippedElbow::options(), trial, options, of(trial),
-                              verdict);
+    return predictExperiments(trial, of(trial), verdict);
   }
 
   ShippedElbow elbow;

@@ -7,6 +7,7 @@
 #include "bio/analysis/replay.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/tables/trial.h"
+#include "libbio/robot_description/double_pendulum_urdf.h"
 #include "support/scratch_folder.h"
 
 // One mechanism in three formats.
@@ -14,18 +15,6 @@ namespace bio {
 namespace {
 
 using testing::StartsWith;
-
-constexpr const char* asUrdf = R"(<robot name="double">
-  <link name="world"/>
-  <link name="upper"><inertial><origin xyz="0 0 -0.2" rpy="0 0 0.3"/><mass value="0.6"/>
-    <inertia ixx="0.02" iyy="0.015" izz="0.004" ixy="0.001" ixz="0" iyz="0"/></inertial></link>
-  <link name="lower"><inertial><origin xyz="0.01 0 -0.25"/><mass value="0.4"/>
-    <inertia ixx="0.01" iyy="0.012" izz="0.003" ixy="0" ixz="0.0005" iyz="0"/></inertial></link>
-  <joint name="q1" type="continuous"><origin xyz="0 0 1"/><parent link="world"/><child link="upper"/>
-    <axis xyz="0 1 0"/><dynamics damping="0.02" friction="0.03"/></joint>
-  <joint name="q2" type="revolute"><origin xyz="0 0 -0.3" rpy="0 0 0.5"/><parent link="upper"/><child link="lower"/>
-    <axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="1" velocity="1"/><dynamics damping="0.01" friction="0"/></joint>
-</robot>)";
 
 // The first tensor is turned by 0.3 about z, the second one's frame by 0.5.
 std::string asMjcf() {
@@ -96,7 +85,8 @@ TEST_F(RobotDescriptions, OneMechanismMovesAlikeInThreeFormats) {
     end << motion.q.rightCols(1), motion.qDot.rightCols(1);
     return end;
   };
-  const Eigen::Vector4d osim = swing(asOsim()), urdf = swing(asUrdf), mjcf = swing(asMjcf());
+  const Eigen::Vector4d osim = swing(asOsim()), urdf = swing(doublePendulumUrdf),
+                        mjcf = swing(asMjcf());
   EXPECT_GT((osim.head(2) - Eigen::Vector2d(1.2, -0.7)).norm(), 0.3);  // it has moved
   // measured 3e-15 of both
   EXPECT_LT((urdf - osim).cwiseAbs().maxCoeff(), 1e-9);
@@ -104,7 +94,8 @@ TEST_F(RobotDescriptions, OneMechanismMovesAlikeInThreeFormats) {
 }
 
 TEST_F(RobotDescriptions, SayWhatBecameOfThem) {
-  const auto lines = readRobotDescription(folder_.file("r.xml", asUrdf)).translated;
+  const auto lines =
+      translationOf(readOsim(folder_.file("r.xml", doublePendulumUrdf)), ModelFormat::urdf);
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(
       lines[0],

@@ -24,33 +24,6 @@ class Urdf : public testing::Test {
   support::ScratchFolder folder_;
 };
 
-std::map<std::string, double> drawnPosture(const std::vector<hand::Link>& links,
-                                           std::mt19937& random) {
-  std::uniform_real_distribution<double> value(-2, 2);
-  std::map<std::string, double> q;
-  for (const hand::Link& link : links) {
-    for (const hand::Motion& motion : link.motions) q[motion.name] = value(random);
-  }
-  return q;
-}
-
-void agreesWithHand(const Model& model, const std::vector<hand::Link>& links) {
-  std::mt19937 random(4);
-  for (int trial = 0; trial < 8; ++trial) {
-    const auto q = drawnPosture(links, random);
-    const hand::Dynamics expected = hand::dynamics(links, model.gravity, q);
-    const hand::Dynamics found = hand::dynamics(model, links, q);
-    // measured 4e-15, 4e-15 and 8e-14
-    EXPECT_LT((found.mass - expected.mass).cwiseAbs().maxCoeff(), 1e-12);
-    EXPECT_LT((found.gravity - expected.gravity).cwiseAbs().maxCoeff(), 1e-11);
-    EXPECT_LT(
-        (found.mass.ldlt().solve(found.gravity) - expected.mass.ldlt().solve(expected.gravity))
-            .cwiseAbs()
-            .maxCoeff(),
-        1e-9);
-  }
-}
-
 constexpr const char* pendulum = R"(<robot name="pendulum">
   <link name="base"/>
   <link name="rod"><inertial><origin xyz="0 0 -0.3"/><mass value="2"/>
@@ -187,7 +160,7 @@ std::vector<hand::Link> armByHand() {
 
 TEST_F(Urdf, AnArmOfObliqueFramesAndFullTensorsIsThatOfItsNumbers) {
   const Model model = read(arm);
-  agreesWithHand(model, armByHand());
+  hand::expectTheSame(model, armByHand(), 2);
   const Coordinate& yaw = findCoordinate(model, "yaw");
   EXPECT_EQ(yaw.rangeMin, -2.5);
   EXPECT_EQ(yaw.rangeMax, 1.5);
@@ -207,19 +180,21 @@ TEST_F(Urdf, AFloatingBodyAndAPlanarOneMoveByTheirNames) {
   };
   const Matrix3d R = hand::rollPitchYaw(0.1, 0.2, 0.3);
   const Matrix3d I = tensor(1, 2, 2.5, 0.1, 0, 0);
-  agreesWithHand(of("floating"), {{-1,
-                                   {1, 2, 3},
-                                   R,
-                                   {{"j_tx", false, {1, 0, 0}},
-                                    {"j_ty", false, {0, 1, 0}},
-                                    {"j_tz", false, {0, 0, 1}},
-                                    {"j_rx", true, {1, 0, 0}},
-                                    {"j_ry", true, {0, 1, 0}},
-                                    {"j_rz", true, {0, 0, 1}}},
-                                   1,
-                                   {0.1, 0, 0},
-                                   I}});
-  agreesWithHand(
+  hand::expectTheSame(of("floating"),
+                      {{-1,
+                        {1, 2, 3},
+                        R,
+                        {{"j_tx", false, {1, 0, 0}},
+                         {"j_ty", false, {0, 1, 0}},
+                         {"j_tz", false, {0, 0, 1}},
+                         {"j_rx", true, {1, 0, 0}},
+                         {"j_ry", true, {0, 1, 0}},
+                         {"j_rz", true, {0, 0, 1}}},
+                        1,
+                        {0.1, 0, 0},
+                        I}},
+                      2);
+  hand::expectTheSame(
       of("planar"),
       {{-1,
         {1, 2, 3},
@@ -227,7 +202,8 @@ TEST_F(Urdf, AFloatingBodyAndAPlanarOneMoveByTheirNames) {
         {{"j_x", false, {1, 0, 0}}, {"j_y", false, {0, 1, 0}}, {"j_yaw", true, {0, 0, 1}}},
         1,
         {0.1, 0, 0},
-        I}});
+        I}},
+      2);
 }
 
 TEST_F(Urdf, JointsThatMimicOthersFollowThemAlsoThroughOthers) {

@@ -9,17 +9,17 @@ the truth. --only may be repeated. Sets of one effect have seeds SEED, SEED + 1,
 """
 import argparse
 import dataclasses
-import json
 import math
 import pathlib
 import random
-import subprocess
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import mechanisms  # pylint: disable=wrong-import-position
 
 TOP = pathlib.Path(__file__).resolve().parents[3]
 STEP, EVERY, SAMPLES = 0.001, 20, 151
 NOISE = 0.002
-GRAVITY = 9.81
 MASS, ROD = 1.0, 0.5
 
 
@@ -30,19 +30,18 @@ class System:
     drive: float  # amplitude [N] or [N m]
     viscosity: float  # of the model, and true
 
-    def acceleration(self, q, w, force):
-        force -= self.viscosity * w
-        return force / MASS if self.slides else (force - MASS * GRAVITY * ROD * math.sin(q)) / (MASS * ROD**2)
+    def slope(self, force):
+        """y' = f(t, y) of position and speed, moved by the force of a time."""
+        def at(t, y):
+            q, w = y
+            total = force(t) - self.viscosity * w
+            return [w, total / MASS if self.slides else (total - MASS * mechanisms.GRAVITY * ROD * math.sin(q)) / (MASS * ROD**2)]
+
+        return at
 
     def osim(self):
-        kind, limit, depth = ("SliderJoint", 3, 0) if self.slides else ("PinJoint", 6.3, ROD)
-        return f"""<?xml version="1.0"?><OpenSimDocument Version="40000"><Model name="{self.name}"><gravity>0 {-GRAVITY} 0</gravity>
-<BodySet><objects><Body name="arm"><mass>{MASS}</mass><mass_center>0 {-depth} 0</mass_center><inertia>0 0 0 0 0 0</inertia></Body></objects></BodySet>
-<JointSet><objects><{kind} name="joint"><frames><PhysicalOffsetFrame name="end"><socket_parent>/ground</socket_parent><translation>0 0 0</translation></PhysicalOffsetFrame></frames>
-<socket_parent_frame>end</socket_parent_frame><socket_child_frame>/bodyset/arm</socket_child_frame><coordinates><Coordinate name="q"><default_value>0</default_value>
-<range>{-limit} {limit}</range></Coordinate></coordinates></{kind}></objects></JointSet>
-<ForceSet><objects><SpringGeneralizedForce name="bearing"><coordinate>q</coordinate><stiffness>0</stiffness><rest_length>0</rest_length><viscosity>{self.viscosity}</viscosity>
-</SpringGeneralizedForce></objects></ForceSet></Model></OpenSimDocument>"""
+        link = mechanisms.Link("q", "arm", MASS, 0 if self.slides else ROD, damper="bearing", viscosity=self.viscosity)
+        return mechanisms.osim(self.name, [link], self.slides, 3 if self.slides else 6.3)
 
 
 SYSTEMS = {"slide": System("slide", True, 2.0, 0.8), "pendulum": System("pendulum", False, 1.5, 0.1)}
@@ -83,20 +82,12 @@ def size_of(effect, chance):
 
 def trial(system, drive, chance):
     column = "q.force" if system.slides else "q.torque"
-    text, q, w, h = f"time,q,{column}\n", 0.0, 0.0, STEP
+    text, y = f"time,q,{column}\n", [0.0, 0.0]
     for i in range((SAMPLES - 1) * EVERY + 1):
-        t = i * h
+        t = i * STEP
         if i % EVERY == 0:
-            text += f"{t:.3f},{q + chance.gauss(0, NOISE):.9g},{drive.command(t):.9g}\n"
-        at, half, end = drive.force(t), drive.force(t + h / 2), drive.force(t + h)
-        a1 = system.acceleration(q, w, at)
-        w2 = w + h / 2 * a1
-        a2 = system.acceleration(q + h / 2 * w, w2, half)
-        w3 = w + h / 2 * a2
-        a3 = system.acceleration(q + h / 2 * w2, w3, half)
-        w4 = w + h * a3
-        a4 = system.acceleration(q + h * w3, w4, end)
-        q, w = q + h / 6 * (w + 2 * w2 + 2 * w3 + w4), w + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
+            text += f"{t:.3f},{y[0] + chance.gauss(0, NOISE):.9g},{drive.command(t):.9g}\n"
+        y = mechanisms.rk4(system.slope(drive.force), t, y, STEP)
     return text
 
 
@@ -115,14 +106,10 @@ def searched(program, folder, system, effect, seed):
         elif effect != "none":
             setattr(drive, effect, value)
         (folder / f"t{k}.csv").write_text(trial(system, drive, chance))
-    command = [program, "discover", "model.osim", "t0.csv", "t1.csv", "--hold-out", "t2.csv", "--step", "0.005", "--threads", "1", "--out", "out", "--force"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode not in (0, 1):
-        raise RuntimeError(f"{folder}: {done.stderr.strip()}")
     word = "force" if system.slides else "torque"
     truth = {"gain": {"drive_gain.factor": value}, "delay": {"drive_delay.time": value}, "lag": {"drive_lag.time": value},
              "saturation": {"drive_saturation.share": 1, f"drive_saturation.{word}": value}, "none": {}}[effect]
-    return json.loads((folder / "out/verdict.json").read_text()), truth
+    return mechanisms.verdict(program, folder), truth
 
 
 def main():

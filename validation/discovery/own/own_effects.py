@@ -10,14 +10,13 @@ those of the catalogue, by more than chance (a one-sided 5 % test).
 """
 import argparse
 import collections
-import json
 import math
 import pathlib
 import random
-import subprocess
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "twins"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1] / each) for each in ("", "twins")]
+import mechanisms  # pylint: disable=wrong-import-position
 import scaled_twins as twins  # pylint: disable=wrong-import-position
 
 CATALOGUE, OWN = ("visc", "drag", "stiffness", "const"), ("brake", "detent")
@@ -82,19 +81,6 @@ expression = "-k*sin({notches(system)}*q)"
 """
 
 
-def verdict_on(program, folder, system, motions, seed):
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "model.osim").write_text(system.osim(twins.ONE))
-    (folder / "effects.toml").write_text(file_of_effects(system.name, system.slides))
-    for k, rows in enumerate(motions):
-        (folder / f"t{k}.csv").write_text(system.table(rows, twins.ONE, random.Random(f"noise {seed} {k}")))
-    done = subprocess.run([program, "discover", "model.osim", "t0.csv", "t1.csv", "--hold-out", "t2.csv", "--effect", "effects.toml", "--step", "0.005", "--threads", "1", "--out", "out", "--force"],
-                          cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode not in (0, 1):
-        raise RuntimeError(f"{folder}: {done.stderr.strip()}")
-    return json.loads((folder / "out/verdict.json").read_text())
-
-
 def within_range(system, motion, seed):
     """A motion that does not go round; drawn again as often as it does."""
     for attempt in range(100):
@@ -133,7 +119,9 @@ def main():
             value = value_of(effect, system.name, chance)
             motion = system.equations(effect or "const", value)
             motions = [within_range(system, motion, f"{seed} {trial}") for trial in range(3)]
-            verdict = verdict_on(program, asked.folder / f"{kind}_{k}", system, motions, seed)
+            folder = twins.written(asked.folder / f"{kind}_{k}", system, motions, twins.ONE, seed)
+            (folder / "effects.toml").write_text(file_of_effects(system.name, system.slides))
+            verdict = mechanisms.verdict(program, folder, "--effect", "effects.toml")
             found = [each["id"] for each in verdict["effects"]]
             named = verdict["verdict"] in ("named", "ambiguous")
             first = found[0] if found else ""

@@ -10,19 +10,20 @@ effect is in the class is printed beside. --only may be repeated. Exit status 1 
 """
 import argparse
 import dataclasses
-import json
 import math
 import pathlib
 import random
 import re
-import subprocess
 import sys
 import typing
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import mechanisms  # pylint: disable=wrong-import-position
 
 TOP = pathlib.Path(__file__).resolve().parents[3]
 STEP, EVERY, SAMPLES = 0.001, 20, 151
 NOISE = 0.002
-GRAVITY = 9.81
+GRAVITY = mechanisms.GRAVITY
 SHARPNESS = 0.005  # speed over which dry friction grows, in rad/s or m/s
 
 
@@ -56,12 +57,12 @@ RESISTANCES = {  # of a coordinate, by its position and speed
 
 def slide(effect, value):
     mass = 1 + (value if effect == "mass" else 0)
-    return lambda t, y, force: [y[1], (force + RESISTANCES[effect](value, *y)) / mass]
+    return lambda y, force: [y[1], (force + RESISTANCES[effect](value, *y)) / mass]
 
 
 def pendulum(effect, value):
     mass, rod = 1 + (value if effect == "mass" else 0), 0.5
-    return lambda t, y, force: [y[1], (force - mass * GRAVITY * rod * math.sin(y[0]) + RESISTANCES[effect](value, *y)) / (mass * rod**2)]
+    return lambda y, force: [y[1], (force - mass * GRAVITY * rod * math.sin(y[0]) + RESISTANCES[effect](value, *y)) / (mass * rod**2)]
 
 
 def double_pendulum(effect, value):
@@ -69,7 +70,7 @@ def double_pendulum(effect, value):
     where, what = effect.split(".")
     m1, m2, a, b = 1, 0.6, 0.5, 0.4
 
-    def slope(t, y, force):
+    def slope(y, force):
         q1, q2, w1, w2 = y
         c, s = math.cos(q2), math.sin(q2)
         m11, m12, m22 = m1 * a * a + m2 * (a * a + b * b + 2 * a * b * c), m2 * (b * b + a * b * c), m2 * b * b
@@ -92,7 +93,7 @@ class System:
     name: str
     links: list  # (coordinate, mass [kg], rod [m])
     drive: float  # amplitude [N] or [N m]; 0: it swings freely
-    equations: typing.Callable  # of an effect and its value: y' = f(t, y, drive)
+    equations: typing.Callable  # of an effect and its value: y' = f(y, drive)
     effects: dict
 
     @property
@@ -118,28 +119,12 @@ class System:
             t = i * STEP
             if i % EVERY == 0:
                 rows.append((t, force(t), y[:len(self.links)]))
-            k1 = slope(t, y, force(t))
-            k2 = slope(t, [a + STEP / 2 * b for a, b in zip(y, k1)], force(t + STEP / 2))
-            k3 = slope(t, [a + STEP / 2 * b for a, b in zip(y, k2)], force(t + STEP / 2))
-            k4 = slope(t, [a + STEP * b for a, b in zip(y, k3)], force(t + STEP))
-            y = [a + STEP / 6 * (b + 2 * c + 2 * d + e) for a, b, c, d, e in zip(y, k1, k2, k3, k4)]
+            y = mechanisms.rk4(lambda at, state: slope(state, force(at)), t, y, STEP)
         return rows
 
     def osim(self, units):
-        kind, limit = ("SliderJoint", 3.0 * units.length) if self.slides else ("PinJoint", 6.3)
-        bodies = joints = ""
-        parent, offset = "/ground", 0
-        for coordinate, mass, rod in self.links:
-            body = f"/bodyset/{coordinate}_link"
-            bodies += (f'<Body name="{coordinate}_link"><mass>{units.mass * mass!r}</mass><mass_center>0 {-units.length * rod!r} 0</mass_center>'
-                       '<inertia>0 0 0 0 0 0</inertia></Body>')
-            joints += (f'<{kind} name="{coordinate}_joint"><frames><PhysicalOffsetFrame name="end"><socket_parent>{parent}</socket_parent>'
-                       f'<translation>0 {-units.length * offset!r} 0</translation></PhysicalOffsetFrame></frames><socket_parent_frame>end</socket_parent_frame>'
-                       f'<socket_child_frame>{body}</socket_child_frame><coordinates><Coordinate name="{coordinate}"><default_value>0</default_value>'
-                       f'<range>{-limit!r} {limit!r}</range></Coordinate></coordinates></{kind}>')
-            parent, offset = body, rod
-        return (f'<?xml version="1.0"?><OpenSimDocument Version="40000"><Model name="{self.name}"><gravity>0 {-GRAVITY * units.length!r} 0</gravity>'
-                f'<BodySet><objects>{bodies}</objects></BodySet><JointSet><objects>{joints}</objects></JointSet><ForceSet><objects/></ForceSet></Model></OpenSimDocument>')
+        links = [mechanisms.Link(coordinate, f"{coordinate}_link", units.mass * mass, units.length * rod, length=units.length * rod) for coordinate, mass, rod in self.links]
+        return mechanisms.osim(self.name, links, self.slides, 3.0 * units.length if self.slides else 6.3, GRAVITY * units.length)
 
     def table(self, rows, units, chance):
         first = self.links[0][0]
@@ -161,18 +146,13 @@ SYSTEMS = [
 ]
 
 
-def searched(program, folder, system, motions, units, seed):
-    """The verdict on the last of the motions, which is held out, and the others."""
+def written(folder, system, motions, units, seed):
+    """model.osim and t0.csv, t1.csv, …"""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "model.osim").write_text(system.osim(units))
     for k, rows in enumerate(motions):
         (folder / f"t{k}.csv").write_text(system.table(rows, units, random.Random(f"noise {seed} {k}")))
-    *files, held_out = [f"t{k}.csv" for k in range(len(motions))]
-    command = [program, "discover", "model.osim", *files, "--hold-out", held_out, "--step", "0.005", "--threads", "1", "--out", "out", "--force"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode not in (0, 1):
-        raise RuntimeError(f"{folder}: {done.stderr.strip()}")
-    return json.loads((folder / "out/verdict.json").read_text())
+    return folder
 
 
 def numbers(verdict):
@@ -207,7 +187,8 @@ def main():
             if asked.only and f"{system.name}:{effect}" not in asked.only:
                 continue
             motions = [system.motion(system.equations(effect, value), 10 * asked.seed + k) for k in range(3)]
-            verdict, twins = (searched(program, asked.folder / f"{system.name}_{effect}_{units.mass}", system, motions, units, asked.seed) for units in (ONE, TWIN))
+            verdict, twins = (
+                mechanisms.verdict(program, written(asked.folder / f"{system.name}_{effect}_{units.mass}", system, motions, units, asked.seed)) for units in (ONE, TWIN))
             unlikeness = difference(verdict, twins)
             found = ", ".join(f"{key} {number:.4g} ± {sd:.2g} {unit}" for key, (number, sd, unit) in numbers(verdict).items())
             pairs, unlike, right = pairs + 1, unlike + bool(unlikeness), right + (effect in verdict["class"])

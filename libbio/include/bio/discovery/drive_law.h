@@ -59,11 +59,17 @@ struct DriveCommand {
 /// trial.
 std::vector<DriveCommand> commandsOf(const std::vector<Trial>& trials,
                                      const std::vector<std::string>& names);
+/// Of every coordinate, as large as 1: before there are trials, any may be driven.
+std::vector<DriveCommand> possibleCommands(const std::vector<std::string>& names);
 
 /// Quantities of an encompassing model between the commands of a coordinate and its force.
 struct Drive {
   DriveCommand command;
   std::optional<std::size_t> gain = {}, delay = {}, lag = {}, share = {}, limit = {};
+  bool owns(std::size_t quantity) const {
+    return quantity == gain || quantity == delay || quantity == lag || quantity == share ||
+           quantity == limit;
+  }
 };
 /// What they are at values of all quantities.
 DriveLaw driveLaw(const Drive& drive, const Eigen::VectorXd& values);

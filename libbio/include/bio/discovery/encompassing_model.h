@@ -110,7 +110,6 @@ class EncompassingModel {
   const SystemOptions& systemOptions() const { return systemOptions_; }
   const std::vector<MovingCoordinate>& coordinates() const { return coordinates_; }
   std::vector<std::string> coordinateNames() const;
-  std::map<std::string, MotionSize> motions() const;  ///< of setMotions
   /// Whether there is one coordinate, whose effects have short ids.
   bool hasOneCoordinate() const { return coordinates_.size() == 1; }
   /// The first coordinate, which is the only one where the model has one.
@@ -204,7 +203,6 @@ class EncompassingModel {
   std::size_t sensorOf(std::size_t quantity) const { return meanings_[quantity].sensor; }
   const std::vector<TimedForce>& timedForces() const { return timedForces_; }
   const std::vector<Drive>& drives() const { return drives_; }
-  std::vector<DriveCommand> commands() const;
   DriveLaws driveLawsAt(const Eigen::VectorXd& values) const;
   std::optional<std::size_t> parameterOf(std::size_t quantity) const {
     return meanings_[quantity].parameter;

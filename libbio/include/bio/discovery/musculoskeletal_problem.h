@@ -16,8 +16,7 @@ namespace bio::discover {
 
 class SensedMotion;
 
-/// Without CatalogueChoice::sensors the outputs are what the trials measure; without drives they
-/// are those of the trials.
+/// Sensors, motions and drives that are not chosen are those of the trials.
 struct MusculoskeletalProblemOptions : CatalogueChoice {
   SimulationOptions simulation;  ///< integrator: variational or variationalLeft; step
   double latentSpacing = 0.05;   ///< between nodes of the latent force [s] > 0
@@ -221,8 +220,8 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
                          const Eigen::VectorXd& latent, const std::vector<std::size_t>& wanted,
                          bool latentToo) const;
 
+  MusculoskeletalProblemOptions options_;  ///< with a choice of everything
   EncompassingModel encompassing_;
-  MusculoskeletalProblemOptions options_;
   std::vector<Quantity> quantities_;  ///< those of the model, then the initial states of the trials
   std::vector<std::size_t> nuisances_;
   std::vector<info::discover::Axis> axes_;  ///< the coordinates

@@ -21,10 +21,7 @@ struct PredictedExperiment {
 /// first. Experiments that leave the range of the coordinate or cannot be simulated are left out.
 /// Empty if no effects are in question.
 /// @param trial trial to repeat
-/// @param options  those of `data`
-std::vector<PredictedExperiment> predictExperiments(const Model& model, const SystemOptions& system,
-                                                    const Trial& trial,
-                                                    const MusculoskeletalProblemOptions& options,
+std::vector<PredictedExperiment> predictExperiments(const Trial& trial,
                                                     const MusculoskeletalProblem& data,
                                                     const info::discover::Verdict& verdict);
 

@@ -20,21 +20,18 @@ enum class ModelFormat { none, openSim, urdf, mjcf };
 ModelFormat modelFormat(const std::filesystem::path& file);
 ModelFormat modelFormat(const tinyxml2::XMLDocument& document);
 
-struct RobotDescription {
-  Model model;  ///< with warnings (what would act and is not simulated) and remarks
-  /// What became of what, for people: one line each.
-  std::vector<std::string> translated;
-};
-
-/// A parsed URDF or MJCF as a model: links or bodies, joints, masses and inertias, damping, dry
-/// friction −c·tanh(q̇/0.05), springs, motors and gravity. Coordinates have the joints' names, zeros
+/// A parsed URDF or MJCF as a model, with warnings (what would act and is not simulated) and
+/// remarks: links or bodies, joints, masses and inertias, damping, dry friction −c·tanh(q̇/0.05),
+/// springs, motors and gravity. Coordinates have the joints' names, zeros
 /// and signs, bodies the links' names. Tables of what is read: docs/files.md.
 ///
 /// @param file where the document is from, for messages and for what an MJCF includes
 /// @throws FileError if the document breaks a rule of its format, or holds what a model cannot say
-RobotDescription readRobotDescription(const tinyxml2::XMLDocument& document,
-                                      const std::filesystem::path& file);
-/// Parses the file first.
-RobotDescription readRobotDescription(const std::filesystem::path& file);
+Model readRobotDescription(const tinyxml2::XMLDocument& document,
+                           const std::filesystem::path& file);
+
+/// What a description became, for people: one line each.
+/// @param model as readOsim gives it
+std::vector<std::string> translationOf(const Model& model, ModelFormat format);
 
 }  // namespace bio

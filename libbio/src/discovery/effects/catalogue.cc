@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
@@ -218,7 +219,10 @@ namespace {
 
 /// To three digits, which is how a formula tells it.
 double roundedSize(double size) {
-  return std::stod(fmt::format("{:.2e}", size));
+  const std::string text = fmt::format("{:.2e}", size);
+  double rounded = size;
+  std::from_chars(text.data(), text.data() + text.size(), rounded);  // whatever the locale
+  return rounded;
 }
 
 }  // namespace
