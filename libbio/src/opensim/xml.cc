@@ -123,13 +123,14 @@ std::vector<double> readNumbers(const Source& source, const Element& object, con
   const std::string text = trimmedText(element);
   std::vector<double> values;
   for (std::size_t at = 0; at < text.size();) {
-    const auto begin =
-        std::find_if_not(text.begin() + static_cast<std::ptrdiff_t>(at), text.end(), isSpace);
-    const auto end = std::find_if(begin, text.end(), isSpace);
+    const char* const stop = text.data() + text.size();
+    const char* const begin = std::find_if_not(text.data() + at, stop, isSpace);
+    const char* const end = std::find_if(begin, stop, isSpace);
     if (begin != end) {
-      values.push_back(parseNumber(source, object, *element, std::string_view(begin, end), unit));
+      const std::string_view token(begin, static_cast<std::size_t>(end - begin));
+      values.push_back(parseNumber(source, object, *element, token, unit));
     }
-    at = static_cast<std::size_t>(end - text.begin());
+    at = static_cast<std::size_t>(end - text.data());
   }
   if (count && values.size() != *count) {
     fail(source, object,

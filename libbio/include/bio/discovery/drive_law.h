@@ -59,7 +59,7 @@ struct DriveCommand {
 /// trial.
 std::vector<DriveCommand> commandsOf(const std::vector<Trial>& trials,
                                      const std::vector<std::string>& names);
-/// Of every coordinate, as large as 1: before there are trials, any may be driven.
+/// A command of size 1 on every coordinate: before there are trials, any may be driven.
 std::vector<DriveCommand> possibleCommands(const std::vector<std::string>& names);
 
 /// Quantities of an encompassing model between the commands of a coordinate and its force.
