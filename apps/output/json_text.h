@@ -14,6 +14,13 @@ inline std::string jsonText(const nlohmann::ordered_json& json, int indent = -1)
   return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
+/// JSON for a script element, which it must not be able to end.
+inline std::string scriptText(const nlohmann::ordered_json& json) {
+  std::string text;
+  for (const char c : jsonText(json)) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return text;
+}
+
 /// The number; null where it is infinite or NaN, for which JSON has no word.
 inline nlohmann::ordered_json orNull(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();

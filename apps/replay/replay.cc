@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "bio/analysis/replay.h"
 #include "bio/analysis/step_effect.h"
 #include "bio/discovery/with_experimental_conditions.h"
 #include "bio/opensim/osim_file.h"
 #include "command/command.h"
+#include "options/quantity.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
@@ -13,6 +16,27 @@
 
 namespace app {
 namespace {
+
+/// The model, mapping and start with the values of --set.
+bio::ParameterCatalogue::Setting settingOf(const std::vector<std::string>& typed,
+                                           const bio::ParameterCatalogue& catalogue) {
+  std::vector<std::size_t> selection;
+  Eigen::VectorXd values(static_cast<Eigen::Index>(typed.size()));
+  for (std::size_t i = 0; i < typed.size(); ++i) {
+    const std::size_t equals = typed[i].find('=');
+    if (equals == std::string::npos) {
+      throw std::invalid_argument(fmt::format("--set {}: must be NAME=VALUE", typed[i]));
+    }
+    const std::size_t index = catalogue.find(typed[i].substr(0, equals));
+    if (std::find(selection.begin(), selection.end(), index) != selection.end()) {
+      throw std::invalid_argument(
+          fmt::format("--set: '{}' is given twice", catalogue.parameters()[index].name));
+    }
+    selection.push_back(index);
+    values[static_cast<Eigen::Index>(i)] = parseNumber(typed[i].substr(equals + 1));
+  }
+  return catalogue.at(selection, values);
+}
 
 class Replay : public Command {
  public:
@@ -32,6 +56,12 @@ class Replay : public Command {
         "--reactions", reactions_,
         "also the reactions at all locked coordinates, as NAME.reaction in forces.sto; "
         "without it, at those with a column NAME.moment");
+    options
+        .add_option("--set", set_,
+                    "another value of a parameter, in its unit, as TRI.radius=0.018; may be "
+                    "repeated; `sensitivity MODEL --list-parameters` lists them")
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false);
     options.add_flag("--strict", strict_,
                      "exit with status 1 if a coordinate leaves its range by more than a tenth of "
                      "it, or a fibre leaves 0.2 to 2 optimal lengths");
@@ -58,7 +88,18 @@ class Replay : public Command {
       model = bio::discover::withExperimentalConditions(model, systemOptions(simulation_),
                                                         simulation_.coordinates, trial);
     }
-    const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
+    bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
+    bio::TrialBeginning beginning =
+        bio::beginningOf(trial, model, system, byName(simulation_.initial));
+    bio::EmgMapping mapping;
+    if (!set_.empty()) {
+      bio::ParameterCatalogue::Setting setting =
+          settingOf(set_, bio::ParameterCatalogue(model, system, beginning.point));
+      model = std::move(setting.model);
+      mapping = std::move(setting.mapping);
+      beginning.point = std::move(setting.start);
+      system = bio::MusculoskeletalSystem(model, systemOptions(simulation_));
+    }
     bio::TrialReplay replay;
     {
       ProgressBar bar("replay");
@@ -68,9 +109,7 @@ class Replay : public Command {
         bar.update((t - trial.times[0]) / trial.duration());
         return true;
       };
-      replay =
-          bio::replayTrial(system, trial, options,
-                           bio::beginningOf(trial, model, system, byName(simulation_.initial)));
+      replay = bio::replayTrial(system, trial, options, std::move(beginning), mapping);
     }
     const bio::Trajectory& motion = replay.motion;
     const std::optional<bio::LeftRange> left = bio::leftRange(system, motion);
@@ -105,6 +144,7 @@ class Replay : public Command {
   SimulationOptions simulation_;
   std::string muscleClass_;    ///< empty: as in the model
   std::string externalLoads_;  ///< empty: none
+  std::vector<std::string> set_;
   bool reactions_ = false;
   bool strict_ = false;
 };

@@ -52,13 +52,6 @@ void mustBeAsLong(const Figure& figure, const Series& series, const std::vector<
                   figure.title, series.name, what, values.size(), series.x.size()));
 }
 
-/// JSON inside a script element must not be able to end that element.
-std::string scriptText(const Json& json) {
-  std::string text;
-  for (const char c : jsonText(json)) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return text;
-}
-
 std::string html(const Section& section) {
   return fmt::format("<h2>{}</h2>\n", htmlText(section.title));
 }

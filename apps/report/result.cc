@@ -25,8 +25,14 @@ void printFigure(const std::string& name, const nlohmann::ordered_json& value) {
 
 void deliver(const CommandContext& context, const Summary& summary, const Report& report,
              OutputFolder& folder) {
+  deliverPage(context, summary, report.verdict,
+              folder.active() ? renderReport(report, summary) : std::string(), folder);
+}
+
+void deliverPage(const CommandContext& context, const Summary& summary, const std::string& verdict,
+                 const std::string& page, OutputFolder& folder) {
   nlohmann::ordered_json json = summary.toJson();
-  folder.write("report.html", [&](std::ostream& out) { out << renderReport(report, summary); });
+  folder.write("report.html", [&](std::ostream& out) { out << page; });
   json["files"] = folder.files();
   json["files_sha256"] = nlohmann::ordered_json::object();
   for (const std::string& name : folder.files()) json["files_sha256"][name] = folder.hashOf(name);
@@ -38,7 +44,7 @@ void deliver(const CommandContext& context, const Summary& summary, const Report
     fmt::print("{}\n", jsonText(json, 2));
     return;
   }
-  fmt::print("{}\n", report.verdict);
+  fmt::print("{}\n", verdict);
   for (const auto& [name, value] : summary.figures().items()) printFigure(name, value);
   if (folder.active()) fmt::print("Report: {}\n", folder.path("report.html").string());
 }

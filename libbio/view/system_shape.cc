@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "bio/muscle/curves/curves.h"
 #include "bio/path/posture_samples.h"
 
 namespace bio::view {
@@ -24,12 +25,27 @@ TaperedBone boneTo(const Vector3d& end) {
   return bone;
 }
 
+/// Where a child body is in its parent's frame, at the default values of the coordinates: a custom
+/// joint may shift it far from the joint's own frame.
+Vector3d childOf(const Model& model, const Joint& joint) {
+  Vector3d shift = Vector3d::Zero();
+  if (joint.kind == JointKind::custom) {
+    for (std::size_t i = 3; i < joint.axes.size(); ++i) {
+      const TransformAxis& axis = joint.axes[i];
+      const double at =
+          axis.coordinate.empty() ? 0.0 : findCoordinate(model, axis.coordinate).defaultValue;
+      shift += FunctionEvaluator(axis.function).value(at) * axis.axis.normalized();
+    }
+  }
+  return joint.parentFrame.translation + placementOf(joint.parentFrame).R * shift;
+}
+
 std::vector<TaperedBone> bonesOf(const Model& model, const Body& body) {
   std::vector<TaperedBone> bones;
   double longest = 0;
   for (const Joint& joint : model.joints) {
     if (joint.parentBody != body.name) continue;
-    const Vector3d& end = joint.parentFrame.translation;
+    const Vector3d end = childOf(model, joint);
     longest = std::max(longest, end.norm());
     if (end.norm() >= shortestBone) bones.push_back(boneTo(end));
   }
@@ -44,43 +60,35 @@ bool isRound(const WrapObject& wrap) {
   return wrap.shape == WrapShape::cylinder || wrap.shape == WrapShape::sphere;
 }
 
-SystemPoser::Posture poseOnTree(const Skeleton& skeleton, const std::vector<std::string>& bodies,
-                                const std::vector<MusclePath>& paths, const Eigen::VectorXd& q) {
-  const bio::Posture placed = postureOf(skeleton, {q.begin(), q.end()});
-  SystemPoser::Posture posture;
-  for (const std::string& body : bodies) {
-    const BodyPlacement& place = skeleton.placeOf(body);
-    posture.bodies[body] = placed.placements[place.segment] * place.X_SB;
-  }
-  for (const MusclePath& path : paths) posture.muscles.push_back({path.pathPoints(placed, 0.05)});
-  return posture;
-}
+}  // namespace
 
-SystemPoser::Posture poseOfOneCoordinate(const Skeleton& skeleton,
-                                         const std::vector<std::string>& bodies,
-                                         const std::vector<MusclePath>& paths,
-                                         const Eigen::VectorXd& q) {
+PlacedPaths placedPaths(const Skeleton& skeleton, const std::vector<std::string>& bodies,
+                        const std::vector<const MusclePath*>& paths, const Eigen::VectorXd& q) {
+  constexpr double step = 0.05;  // [rad] along an arc
+  PlacedPaths placed;
+  const auto place = [&](auto&& placementOf) {
+    for (const std::string& body : bodies) {
+      const BodyPlacement& in = skeleton.placeOf(body);
+      placed.bodies.push_back(placementOf(in.segment) * in.X_SB);
+    }
+  };
+  if (skeleton.tree()) {
+    const bio::Posture posture = postureOf(skeleton, {q.begin(), q.end()});
+    place([&](std::size_t segment) { return posture.placements[segment]; });
+    for (const MusclePath* path : paths)
+      placed.lines.push_back(path->isFunction() ? std::vector<Vector3d>()
+                                                : path->pathPoints(posture, step));
+    return placed;
+  }
   const Eigen::Matrix<double, 1, 1> free = q;
   std::vector<RigidMotion<double, 1>> moved(skeleton.numSegments());
   skeleton.motions<double, 1>(free, moved.data());
-  SystemPoser::Posture posture;
-  for (const std::string& body : bodies) {
-    const BodyPlacement& place = skeleton.placeOf(body);
-    posture.bodies[body] = moved[place.segment].value * place.X_SB;
-  }
-  for (const MusclePath& path : paths) {
-    posture.muscles.push_back({path.pathPoints<1>(free, moved.data(), 0.05)});
-  }
-  return posture;
+  place([&](std::size_t segment) { return moved[segment].value; });
+  for (const MusclePath* path : paths)
+    placed.lines.push_back(path->isFunction() ? std::vector<Vector3d>()
+                                              : path->pathPoints<1>(free, moved.data(), step));
+  return placed;
 }
-
-SystemPoser::Posture poseAt(const Skeleton& skeleton, const std::vector<std::string>& bodies,
-                            const std::vector<MusclePath>& paths, const Eigen::VectorXd& q) {
-  if (skeleton.tree()) return poseOnTree(skeleton, bodies, paths, q);
-  return poseOfOneCoordinate(skeleton, bodies, paths, q);
-}
-
-}  // namespace
 
 std::vector<BodyShape> bodyShapes(const Model& model) {
   std::vector<BodyShape> shapes;
@@ -157,9 +165,14 @@ SystemPoser::Posture SystemPoser::pose(const Eigen::VectorXd& q,
                                             q.size(), radii.size(), skeleton_.numCoordinates(),
                                             paths_.size()));
   }
-  Posture posture = poseAt(skeleton_, bodies_, paths_, q);
+  std::vector<const MusclePath*> paths;
+  for (const MusclePath& path : paths_) paths.push_back(&path);
+  PlacedPaths placed = placedPaths(skeleton_, bodies_, paths, q);
+  Posture posture;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) posture.bodies[bodies_[i]] = placed.bodies[i];
   for (std::size_t i = 0; i < paths_.size(); ++i) {
-    MuscleShape& muscle = posture.muscles[i];
+    MuscleShape& muscle = posture.muscles.emplace_back();
+    muscle.points = std::move(placed.lines[i]);
     muscle.radius = radii[i];
     for (const WrapObject& wrap : wraps_[i]) {
       muscle.points = liftedOff(wrap, posture.bodies.at(wrap.body), muscle.points, radii[i]);

@@ -46,6 +46,18 @@ struct MuscleShape {
 /// @param tendonForce  F [N]; below 0 (a slack tendon that is extrapolated) as 0
 double tubeRadius(double tendonForce);
 
+/// Bodies and paths in one posture.
+struct PlacedPaths {
+  std::vector<Placement<double>> bodies;            ///< in ground
+  std::vector<std::vector<Eigen::Vector3d>> lines;  ///< of the paths, in ground [m]; empty for a
+                                                    ///< path that is a function of coordinates
+};
+/// @param bodies  by name, "ground" among them
+/// @param q  in the skeleton's order [rad] or [m]
+/// @throws std::domain_error if a path has no taut string there
+PlacedPaths placedPaths(const Skeleton& skeleton, const std::vector<std::string>& bodies,
+                        const std::vector<const MusclePath*>& paths, const Eigen::VectorXd& q);
+
 /// A system that takes on postures.
 class SystemPoser {
  public:

@@ -9,6 +9,7 @@
 #include "analysis/initial_speed.h"
 #include "bio/model/units.h"
 #include "bio/observation/observed_motion.h"
+#include "bio/sensitivity/coupled_sensitivity.h"
 #include "bio/simulation/integrator_names.h"
 #include "simulation/integrators.h"
 #include "simulation/motion_weights.h"
@@ -208,10 +209,13 @@ MeasuredError compareWithMeasured(const MusculoskeletalSystem& system, const Tra
 }
 
 TrialReplay replayTrial(const MusculoskeletalSystem& system, const Trial& trial,
-                        SimulationOptions options, TrialBeginning beginning) {
+                        SimulationOptions options, TrialBeginning beginning,
+                        const EmgMapping& mapping) {
   TrialReplay replay;
   RecordedTrial recorded = recordedTrial(trial, system, std::move(options));
+  recorded.excitation = drivenExcitation(recorded.excitation, muscleNames(system), mapping);
   replay.beginning = std::move(beginning);
+  replay.mapping = mapping;
   replay.motion = simulate(system, recorded.excitation,
                            recorded.startAt(system, replay.beginning.point), recorded.simulation);
   for (const MeasuredChannel& measured : trial.measured) {

@@ -24,7 +24,8 @@ std::optional<StepEffect> stepEffect(const MusculoskeletalSystem& system, const 
   options.step /= 2;
   StepEffect effect;
   effect.halfStep = options.step;
-  const Trajectory finer = replayTrial(system, trial, options, replay.beginning).motion;
+  const Trajectory finer =
+      replayTrial(system, trial, options, replay.beginning, replay.mapping).motion;
   if (finer.outcome != Outcome::completed) {
     effect.failed = finer.why;
     return effect;

@@ -39,9 +39,10 @@ char markOf(Separator separator) {
 std::vector<std::string_view> splitWords(std::string_view line) {
   std::vector<std::string_view> cells;
   for (line = trimmed(line); !line.empty();) {
-    const auto end = std::find_if(line.begin(), line.end(), isWhite);
-    cells.emplace_back(line.begin(), end);
-    line = trimmed(std::string_view(end, line.end()));
+    const auto length = static_cast<std::size_t>(
+        std::find_if(line.begin(), line.end(), isWhite) - line.begin());
+    cells.push_back(line.substr(0, length));
+    line = trimmed(line.substr(length));
   }
   return cells;
 }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "bio/emg/emg_mapping.h"
 #include "bio/parameters/parameters.h"
 #include "bio/simulation/simulate.h"
 #include "bio/tables/table_file.h"
@@ -104,6 +105,7 @@ struct ChannelError {
 /// A simulated trial, with its errors against the measurement.
 struct TrialReplay {
   TrialBeginning beginning;
+  EmgMapping mapping;         ///< through which the excitations passed
   SimulationOptions options;  ///< as they were used
   Trajectory motion;
   /// For every free coordinate with a measured value that the motion reaches.
@@ -115,9 +117,11 @@ struct TrialReplay {
 /// @param options integrator, step and progress; times and the external torque are those of the
 ///   trial
 /// @param beginning from beginningOf()
-/// @throws what excitationOf, externalForceOf, initialState and simulate throw
+/// @param mapping  through which the trial's excitations pass
+/// @throws what excitationOf, externalForceOf, drivenExcitation, initialState and simulate throw
 TrialReplay replayTrial(const MusculoskeletalSystem& system, const Trial& trial,
-                        SimulationOptions options, TrialBeginning beginning);
+                        SimulationOptions options, TrialBeginning beginning,
+                        const EmgMapping& mapping = {});
 
 /// Time at which a motion leaves the valid range of its model.
 struct LeftRange {

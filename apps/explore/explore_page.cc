@@ -1,0 +1,92 @@
+#include "explore/explore_page.h"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+#include <openssl/sha.h>
+
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "explore_assets.h"
+#include "info/version.h"
+#include "output/json_text.h"
+#include "output/text.h"
+#include "report_assets.h"
+
+namespace app {
+namespace {
+
+/// For Content-Security-Policy: 'sha256-…' of a script.
+std::string hashSource(const std::string& script) {
+  unsigned char hash[SHA256_DIGEST_LENGTH];
+  SHA256(reinterpret_cast<const unsigned char*>(script.data()), script.size(), hash);
+  std::string text(4 * ((sizeof hash + 2) / 3) + 1, '\0');
+  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), hash,
+                                     static_cast<int>(sizeof hash));
+  text.resize(static_cast<std::size_t>(length));
+  return fmt::format("'sha256-{}'", text);
+}
+
+/// The template with {{name}} replaced; what is put in is not searched again.
+std::string filled(std::string_view pattern,
+                   const std::vector<std::pair<std::string, std::string>>& values) {
+  std::string text;
+  while (true) {
+    const std::size_t open = pattern.find("{{");
+    text += pattern.substr(0, open);
+    if (open == pattern.npos) return text;
+    const std::size_t close = pattern.find("}}", open);
+    const std::string_view name = pattern.substr(open + 2, close - open - 2);
+    for (const auto& [key, value] : values) {
+      if (key == name) text += value;
+    }
+    pattern.remove_prefix(close + 2);
+  }
+}
+
+std::string about(const Summary& summary) {
+  std::string text;
+  if (!summary.warnings().empty()) {
+    text += "<h2>Warnings</h2>\n<ul>\n";
+    for (const std::string& warning : summary.warnings())
+      text += fmt::format("<li>{}</li>\n", htmlText(warning));
+    text += "</ul>\n";
+  }
+  text += fmt::format("<h2>Provenance</h2>\n<p>Made by</p>\n<pre>{}</pre>\n",
+                      htmlText(summary.commandLine()));
+  for (const auto& input : summary.inputs())
+    text += fmt::format("<p>{} SHA-256 {}</p>\n", htmlText(input.path), input.sha256);
+  text += fmt::format(
+      "<p>FisherHill {}. The page simulates by itself, without a network. 3-D view by three.js "
+      "0.170.0, curves by uPlot 1.6.32 (both MIT licence).</p>\n",
+      htmlText(info::version()));
+  return text;
+}
+
+}  // namespace
+
+std::string explorePage(const std::string& title, const std::string& verdict,
+                        const nlohmann::ordered_json& data, const Summary& summary) {
+  const std::string libraries = fmt::format("{}\n{}", assets::threeJs, assets::uplotJs);
+  const std::string scripts = fmt::format("{}\n{}\n{}\n{}", assets::sceneJs, assets::curvesJs,
+                                          assets::parametersJs, assets::pageJs);
+  const std::string policy = fmt::format(
+      "default-src 'none'; script-src {} {} 'wasm-unsafe-eval' blob:; worker-src blob:; "
+      "style-src 'unsafe-inline'; img-src data: blob:",
+      hashSource(libraries), hashSource(scripts));
+  return filled(assets::pageHtml,
+                {{"policy", policy},
+                 {"title", htmlText(title)},
+                 {"licences", fmt::format("{}\n{}", assets::threeLicence, assets::uplotLicence)},
+                 {"styles", fmt::format("{}\n{}", assets::uplotCss, assets::pageCss)},
+                 {"verdict", htmlText(verdict)},
+                 {"about", about(summary)},
+                 {"data", scriptText(data)},
+                 {"core", std::string(assets::liveCore)},
+                 {"worker", fmt::format("{}\n{}", assets::coreJs, assets::workerJs)},
+                 {"libraries", libraries},
+                 {"scripts", scripts}});
+}
+
+}  // namespace app

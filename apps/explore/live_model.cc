@@ -1,0 +1,175 @@
+#include "explore/live_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "bio/analysis/replay.h"
+#include "bio/emg/emg_mapping.h"
+#include "bio/opensim/osim_file.h"
+#include "bio/path/posture_samples.h"
+#include "bio/sensitivity/coupled_sensitivity.h"
+#include "view/system_shape.h"
+
+namespace app {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Every trajectory has two rows at least.
+std::size_t rowBefore(const std::vector<double>& times, double time) {
+  const auto behind = std::upper_bound(times.begin() + 1, times.end() - 1, time);
+  return static_cast<std::size_t>(behind - times.begin()) - 1;
+}
+
+bool hasPath(const bio::MusculoskeletalSystem& system, const std::string& muscle) {
+  return std::any_of(system.muscles().begin(), system.muscles().end(),
+                     [&](const bio::SystemMuscle& one) { return one.name == muscle; });
+}
+
+}  // namespace
+
+LiveModel::LiveModel(const std::filesystem::path& model, LiveChoice choice)
+    : model_(bio::readOsim(model)), choice_(std::move(choice)), nominal_(model_, choice_.system) {
+  bodies_.push_back("ground");
+  for (const bio::Body& body : model_.bodies) bodies_.push_back(body.name);
+  bio::PostureSamples postures(model_, nominal_.skeleton());
+  for (const bio::Muscle& muscle : model_.muscles) {
+    if (!muscle.enabled || hasPath(nominal_, muscle.name)) continue;
+    try {
+      bio::MusclePath path(model_, nominal_.skeleton(), muscle, choice_.system.wrapAsCylinder,
+                           postures.of(muscle));
+      if (path.isFunction()) continue;
+      still_.push_back(std::move(path));
+      stillNames_.push_back(muscle.name);
+    } catch (const bio::UnsupportedWrap&) {
+      // the program has warned of it
+    }
+  }
+}
+
+void LiveModel::addTrial(const std::filesystem::path& file, const std::string& sha256) {
+  bio::Trial trial = bio::readTrial(file, model_, choice_.trial);
+  trial.sha256 = sha256;
+  const bio::TrialBeginning beginning = bio::beginningOf(trial, model_, nominal_, choice_.initial);
+  bio::RecordedTrial recorded = bio::recordedTrial(trial, nominal_, {});
+  bio::ParameterCatalogue catalogue(model_, nominal_, beginning.point);
+  trials_.push_back({std::move(trial), std::move(catalogue), std::move(recorded.excitation),
+                     std::move(recorded.simulation)});
+}
+
+void LiveModel::select(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const bool isKnown = std::any_of(trials_.begin(), trials_.end(), [&](const LiveTrial& trial) {
+      return trial.catalogue.has(name);
+    });
+    if (!isKnown) throw std::invalid_argument(fmt::format("'{}' is no parameter", name));
+  }
+  names_ = names;
+  for (LiveTrial& trial : trials_) {
+    trial.selection.clear();
+    trial.given.clear();
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      if (!trial.catalogue.has(names_[i])) continue;
+      trial.selection.push_back(trial.catalogue.find(names_[i]));
+      trial.given.push_back(static_cast<Eigen::Index>(i));
+    }
+  }
+}
+
+void LiveModel::run(std::size_t trial, const Eigen::VectorXd& values, bio::Integrator integrator,
+                    double step) {
+  const LiveTrial& live = trials_.at(trial);
+  if (values.size() != static_cast<Eigen::Index>(names_.size())) {
+    throw std::invalid_argument(fmt::format("{} values, must be {}", values.size(), names_.size()));
+  }
+  bio::ParameterCatalogue::Setting setting = live.catalogue.at(live.selection, values(live.given));
+  bio::MusculoskeletalSystem system(setting.model, choice_.system);
+  bio::SimulationOptions options = live.simulation;
+  options.integrator = integrator;
+  options.step = step;
+  bio::Trajectory motion = bio::simulateSetting(system, setting, live.excitation, options);
+  std::vector<Eigen::VectorXd> measured;
+  for (const bio::MeasuredChannel& channel : live.trial.measured) {
+    const bool canBe =
+        !channel.what.isCoordinate() || system.skeleton().indexOf(channel.what.object) >= 0;
+    measured.push_back(
+        canBe ? bio::ObservedMotion(system, {{channel.what, channel.times}}).values(motion)
+              : Eigen::VectorXd::Constant(channel.times.size(), nan));
+  }
+  const bio::ExcitationSignal driven =
+      bio::drivenExcitation(live.excitation, bio::muscleNames(system), setting.mapping);
+  excitations_.resize(static_cast<Eigen::Index>(system.numMuscles()),
+                      static_cast<Eigen::Index>(motion.time.size()));
+  std::size_t hint = 0;
+  for (std::size_t k = 0; k < motion.time.size(); ++k)
+    driven.at(motion.time[k], hint, excitations_.col(static_cast<Eigen::Index>(k)));
+  motion_ = std::move(motion);
+  measured_ = std::move(measured);
+  setting_ = std::move(setting);
+  system_.emplace(std::move(system));
+}
+
+std::vector<std::string> LiveModel::paths() const {
+  std::vector<std::string> names;
+  for (const bio::SystemMuscle& muscle : nominal_.muscles()) names.push_back(muscle.name);
+  for (const bio::SystemElasticPath& path : nominal_.elasticPaths()) names.push_back(path.name);
+  names.insert(names.end(), stillNames_.begin(), stillNames_.end());
+  return names;
+}
+
+Eigen::VectorXd LiveModel::between(const Eigen::MatrixXd& values, double time) const {
+  if (motion_.time.size() < 2) return values.col(0);
+  const std::size_t row = rowBefore(motion_.time, time);
+  const double first = motion_.time[row], last = motion_.time[row + 1];
+  const double w = std::clamp((time - first) / (last - first), 0.0, 1.0);
+  const auto k = static_cast<Eigen::Index>(row);
+  return (1 - w) * values.col(k) + w * values.col(k + 1);
+}
+
+void LiveModel::drawMuscles(double time, const Eigen::VectorXd& q, Drawing& drawing) const {
+  const std::size_t n = system_->numMuscles();
+  bio::Trajectory moment;
+  moment.time = {time};
+  moment.q = q;
+  moment.qDot = between(motion_.qDot, time);
+  moment.activation = between(motion_.activation, time);
+  moment.fibreLength = between(motion_.fibreLength, time);
+  const bio::MuscleReport report = bio::reportMuscles(*system_, moment);
+  for (std::size_t i = 0; i < drawing.paths.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    drawing.paths[i].force = i < n ? report.tendonForce(k, 0) : nan;
+    drawing.paths[i].activation = i < n ? moment.activation(k, 0) : nan;
+  }
+}
+
+LiveModel::Drawing LiveModel::drawingAt(double time) const {
+  if (!system_) throw std::logic_error("drawingAt: nothing has been simulated");
+  const bio::Skeleton& skeleton = system_->skeleton();
+  Eigen::VectorXd q(skeleton.numCoordinates());
+  time = std::clamp(time, motion_.time.front(), motion_.time.back());
+  if (motion_.time.size() < 2) {
+    q = motion_.q.col(0);
+  } else {
+    const std::size_t row = rowBefore(motion_.time, time);
+    const auto k = static_cast<Eigen::Index>(row);
+    const double h = motion_.time[row + 1] - motion_.time[row];
+    const double s = (time - motion_.time[row]) / h, r = 1 - s;
+    q = r * r * (1 + 2 * s) * motion_.q.col(k) + s * s * (1 + 2 * r) * motion_.q.col(k + 1) +
+        h * s * r * (r * motion_.qDot.col(k) - s * motion_.qDot.col(k + 1));
+  }
+  std::vector<const bio::MusclePath*> paths;
+  for (std::size_t i = 0; i < system_->numPaths(); ++i) paths.push_back(&system_->path(i));
+  for (const bio::MusclePath& path : still_) paths.push_back(&path);
+  const bio::view::PlacedPaths placed = bio::view::placedPaths(skeleton, bodies_, paths, q);
+  Drawing drawing;
+  drawing.bodies = placed.bodies;
+  for (const std::vector<Eigen::Vector3d>& line : placed.lines)
+    drawing.paths.push_back({line, nan, nan});
+  drawMuscles(time, q, drawing);
+  return drawing;
+}
+
+}  // namespace app

@@ -1,0 +1,266 @@
+"use strict";
+// The page: controls, curves and the view, around one worker that simulates.
+
+(async () => {
+  const $ = id => document.getElementById(id);
+  const data = JSON.parse($("data").textContent);
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const colours = () => dark.matches
+    ? ["#56b4e9", "#e69f00", "#00c08b", "#f0e442", "#d98cbf", "#ff7f50", "#a0a0ff", "#9acd32"]
+    : ["#0072b2", "#d55e00", "#009e73", "#b8860b", "#aa4499", "#332288", "#882255", "#117733"];
+
+  // The worker ---------------------------------------------------------------------------------
+
+  const trouble = message => {
+    $("trouble").textContent = message;
+    $("trouble").hidden = !message;
+  };
+  async function unpacked(base64) {
+    const packed = Uint8Array.from(atob(base64), c => c.charCodeAt(0));
+    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+    return new Uint8Array(await new Response(stream).arrayBuffer());
+  }
+  const script = URL.createObjectURL(new Blob([$("worker").textContent], { type: "text/javascript" }));
+  const worker = new Worker(script);
+  const waiting = new Map();
+  let lastId = 0;
+  worker.onmessage = ({ data: { id, answer, failure } }) => {
+    const { resolve, reject } = waiting.get(id);
+    waiting.delete(id);
+    if (failure === undefined) resolve(answer);
+    else reject(new Error(failure));
+  };
+  const ask = (what, more) => new Promise((resolve, reject) => {
+    waiting.set(++lastId, { resolve, reject });
+    worker.postMessage({ id: lastId, what, ...more });
+  });
+
+  // State --------------------------------------------------------------------------------------
+
+  const given = data.parameters.map(p => p.value);
+  const state = {
+    model: data.models.length - 1, trial: 0, values: [...given], integrator: data.integrator, step: data.step,
+    time: data.trials[0].start, playing: false, result: null, reference: [],
+  };
+  const valuesFor = (model, values) => data.models[model].parameters.map(i => values[i]);
+  const request = () => ({
+    model: state.model, trial: state.trial, values: valuesFor(state.model, state.values),
+    integrator: data.integrators.findIndex(i => i.name === state.integrator), step: state.step, time: state.time,
+  });
+
+  // One simulation at a time; what changes meanwhile is simulated next.
+  let isRunning = false, isWanted = false;
+  const simulated = [];  // who waits for the next result
+  async function simulate() {
+    isWanted = true;
+    if (isRunning) return;
+    isRunning = true;
+    while (isWanted) {
+      isWanted = false;
+      const asked = request();
+      try {
+        const result = await ask("run", asked);
+        state.result = { ...result, asked };
+        trouble(result.why);
+        show();
+      } catch (error) {
+        trouble(error.message);
+      }
+    }
+    isRunning = false;
+    simulated.splice(0).forEach(resolve => resolve(state.result));
+  }
+
+  const view = new View($("view"));
+  const curves = new Curves(data, colours);
+  const sliders = new Sliders(data, $("sliders"), (index, value) => setValue(index, value));
+  const ellipse = data.covariance ? new Ellipse(data, setValue) : null;
+  $("ellipses").hidden = !ellipse;
+
+  function setValue(index, value) {
+    if (value === state.values[index]) return;
+    state.values[index] = value;
+    sliders.show(state.values);
+    if (ellipse) ellipse.show(state.values);
+    showCommand();
+    simulate();
+  }
+
+  function largestActivation() {
+    let largest = 0;
+    for (const x of state.result.activations) if (x > largest) largest = x;
+    return Math.max(0.05, Math.ceil(20 * largest) / 20);
+  }
+
+  function show() {
+    const { names, shapes, drawing } = state.result;
+    view.setShapes(shapes, names.bodies.length);
+    const largest = largestActivation();
+    $("largest").textContent = largest.toFixed(2);
+    view.setDrawing(drawing, largest);
+    curves.show(state);
+  }
+
+  function showCommand() {
+    const { models, trials } = data;
+    const quoted = text => /^[\w./:=@%+,-]+$/.test(text) ? text : `'${text.replaceAll("'", `'\\''`)}'`;
+    const model = models[state.model];
+    let text = `fisherhill replay ${quoted(model.file)} ${quoted(trials[state.trial].files[state.model])}${data.options}`;
+    text += ` --integrator ${state.integrator} --step ${state.step}`;
+    for (const i of model.parameters)
+      if (state.values[i] !== given[i]) text += ` --set ${quoted(`${data.parameters[i].name}=${state.values[i]}`)}`;
+    $("command").textContent = text;
+  }
+
+  // Controls -----------------------------------------------------------------------------------
+
+  const addOptions = (select, list, chosen) => list.forEach(([value, label]) => {
+    const option = new Option(label, value, false, value === chosen);
+    select.add(option);
+  });
+  addOptions($("trial"), data.trials.map((t, i) => [String(i), t.name]), "0");
+  $("trialChoice").hidden = data.trials.length < 2;
+  addOptions($("integrator"), data.integrators.map(i => [i.name, i.label]), data.integrator);
+  const steps = [...new Set([0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, data.step])].sort((a, b) => a - b);
+  addOptions($("step"), steps.map(s => [String(s), `${s} s`]), String(data.step));
+  if (data.models.filter(model => model.isShown).length > 1) {
+    data.models.forEach((model, i) => {
+      if (!model.isShown) return;
+      const label = document.createElement("label"), radio = document.createElement("input");
+      radio.type = "radio";
+      radio.name = "variant";
+      radio.checked = i === state.model;
+      radio.onchange = () => { state.model = i; sliders.enable(model.parameters); showCommand(); simulate(); };
+      label.append(radio, " ", model.label);
+      $("variants").append(label);
+    });
+  }
+  const channels = curves.channels(data.trials[0]);
+  addOptions($("channel"), channels.map((c, i) => [String(i), c.label]), "0");
+  $("channel").onchange = () => { curves.channel = Number($("channel").value); curves.show(state, true); };
+  $("inputs").onchange = () => { curves.inputs = $("inputs").value; curves.show(state, true); };
+  $("trial").onchange = () => {
+    state.trial = Number($("trial").value);
+    const trial = data.trials[state.trial];
+    state.time = trial.start;
+    $("channel").replaceChildren();
+    addOptions($("channel"), curves.channels(trial).map((c, i) => [String(i), c.label]), "0");
+    curves.channel = 0;
+    setTimeRange();
+    showCommand();
+    reference().then(simulate);
+  };
+  $("integrator").onchange = () => { state.integrator = $("integrator").value; showCommand(); simulate(); };
+  $("step").onchange = () => { state.step = Number($("step").value); showCommand(); simulate(); };
+  $("reset").onclick = () => {
+    state.values = [...given];
+    sliders.show(state.values);
+    if (ellipse) ellipse.show(state.values);
+    showCommand();
+    simulate();
+  };
+  $("camera").onchange = () => { view.lookFrom($("camera").value); view.render(); };
+  $("wraps").onchange = () => view.showWraps($("wraps").checked);
+
+  // Time ---------------------------------------------------------------------------------------
+
+  function setTimeRange() {
+    const { start, end } = data.trials[state.trial];
+    Object.assign($("time"), { min: start, max: end });
+    setTime(start);
+  }
+  let isDrawing = false;
+  async function setTime(time) {
+    state.time = time;
+    $("time").value = time;
+    $("clock").textContent = `${time.toFixed(3)} s`;
+    curves.setTime(time);
+    if (!state.result || isDrawing || isRunning) return;
+    isDrawing = true;
+    try {
+      const { drawing } = await ask("draw", { model: state.result.asked.model, time });
+      view.setDrawing(drawing, largestActivation());
+    } catch (error) {
+      trouble(error.message);
+    }
+    isDrawing = false;
+  }
+  let before = 0;
+  function advance(now) {
+    if (!state.playing) return;
+    const { start, end } = data.trials[state.trial];
+    const next = state.time + Number($("speed").value) * (now - before) / 1000;
+    before = now;
+    setTime(next > end ? start : next);
+    requestAnimationFrame(advance);
+  }
+  $("play").onclick = () => {
+    state.playing = !state.playing;
+    $("play").textContent = state.playing ? "Pause" : "Play";
+    before = performance.now();
+    if (state.playing) requestAnimationFrame(advance);
+  };
+  $("time").oninput = () => setTime(Number($("time").value));
+  document.addEventListener("keydown", event => {
+    if (event.code !== "Space" || /INPUT|SELECT|BUTTON/.test(event.target.tagName)) return;
+    event.preventDefault();
+    $("play").click();
+  });
+
+  // Results ------------------------------------------------------------------------------------
+
+  function save(name, url) {
+    const link = document.createElement("a");
+    link.download = name;
+    link.href = url;
+    link.click();
+  }
+  const saveText = (name, text, type) => save(name, URL.createObjectURL(new Blob([text], { type })));
+  $("png").onclick = () => { view.render(); save("limb.png", $("view").toDataURL("image/png")); };
+  $("svg").onclick = () => saveText("motion.svg", curves.svg(), "image/svg+xml");
+  $("csv").onclick = () => saveText("motion.csv", curves.csv(state), "text/csv");
+  $("copy").onclick = () => navigator.clipboard.writeText($("command").textContent);
+
+  // Begin --------------------------------------------------------------------------------------
+
+  // The motion of the first model as it was given, for comparison.
+  async function reference() {
+    state.reference = await ask("run", { ...request(), model: 0, values: data.models[0].values });
+  }
+  const context = document.querySelector("#colours canvas").getContext("2d");
+  for (let x = 0; x < 160; ++x) {
+    context.fillStyle = `rgb(${viridisAt(x / 159).map(c => Math.round(255 * c))})`;
+    context.fillRect(x, 0, 1, 10);
+  }
+  const fitSizes = () => { view.resize(); if (state.result) curves.show(state, true); };
+  window.addEventListener("resize", fitSizes);
+  dark.addEventListener("change", fitSizes);
+  view.resize();
+  sliders.show(state.values);
+  sliders.enable(data.models[state.model].parameters);
+  showCommand();
+  const setups = data.models.map(model => ({ ...model.setup, files: { ...data.files } }));
+  try {
+    await ask("load", { wasm: await unpacked($("core").textContent), setups });
+    await reference();
+    setTimeRange();
+    await simulate();
+    if (ellipse) ellipse.show(state.values);
+    document.body.dataset.ready = "yes";
+  } catch (error) {
+    trouble(error.message);
+    document.body.dataset.ready = "no";
+  }
+
+  // For scripts and tests: sets values by name and waits for what is simulated with them.
+  window.explore = {
+    state,
+    set(values) {
+      for (const [name, value] of Object.entries(values))
+        state.values[data.parameters.findIndex(p => p.name === name)] = value;
+      sliders.show(state.values);
+      showCommand();
+      return new Promise(resolve => { simulated.push(resolve); simulate(); });
+    },
+  };
+})();
