@@ -96,8 +96,8 @@ class Explore : public Command {
     std::optional<EarlierVerdict> verdict;
     if (!verdict_.empty()) verdict = addVerdict(summary);
 
-    const PageParameters parameters =
-        pageParameters({models_, inputs, systemOptions(simulation_), names_, noise_, verdict});
+    const PageParameters parameters = pageParameters(
+        {models_, system, inputs, systemOptions(simulation_), names_, noise_, verdict});
     const Json data = pageData(model, system, inputs, parameters);
     const std::string title =
         fmt::format("{} and {}{}", model_, trials_.front(), trials_.size() > 1 ? " …" : "");
@@ -106,8 +106,9 @@ class Explore : public Command {
                 : fmt::format("{} simulated anew for every change of {} parameters.",
                               trials_.size() > 1 ? "The trials are" : "The trial is",
                               parameters.list.size());
-    summary.setSimulation(simulation_.integrator, data["step"].get<double>(),
-                          inputs.front().trial.duration(), 0);
+    summary.set("integrator", simulation_.integrator);
+    summary.set("step_s", data["step"]);
+    summary.set("duration_s", inputs.front().trial.duration());
     summary.set("parameters", parameters.names());
     const std::string page = explorePage(title, sentence, data, summary);
     summary.set("page_bytes", page.size());

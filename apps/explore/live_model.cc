@@ -29,6 +29,33 @@ bool hasPath(const bio::MusculoskeletalSystem& system, const std::string& muscle
                      [&](const bio::SystemMuscle& one) { return one.name == muscle; });
 }
 
+/// Whether a path over the wrap objects of one model is another one in a model that differs in
+/// numbers only.
+bool hasChanged(const bio::Path& path, const bio::Path& other, const bio::Model& model,
+                const bio::Model& changed) {
+  if (path != other) return true;
+  return std::any_of(path.wraps.begin(), path.wraps.end(), [&](const bio::PathWrap& wrap) {
+    return findWrapObject(model, wrap.wrapObject) != findWrapObject(changed, wrap.wrapObject);
+  });
+}
+
+/// The system of a changed model; paths that stay are not compiled again, which takes most of the
+/// time.
+bio::MusculoskeletalSystem changedSystem(const bio::Model& model, const bio::Model& changed,
+                                         const bio::SystemOptions& options,
+                                         const bio::MusculoskeletalSystem& nominal) {
+  for (std::size_t i = 0; i < model.elasticPaths.size(); ++i) {
+    if (hasChanged(model.elasticPaths[i].path, changed.elasticPaths[i].path, model, changed))
+      return {changed, options};
+  }
+  std::vector<std::string> shaped;
+  for (std::size_t i = 0; i < model.muscles.size(); ++i) {
+    if (hasChanged(model.muscles[i].path, changed.muscles[i].path, model, changed))
+      shaped.push_back(model.muscles[i].name);
+  }
+  return {changed, options, nominal, shaped};
+}
+
 }  // namespace
 
 LiveModel::LiveModel(const std::filesystem::path& model, LiveChoice choice)
@@ -86,7 +113,8 @@ void LiveModel::run(std::size_t trial, const Eigen::VectorXd& values, bio::Integ
     throw std::invalid_argument(fmt::format("{} values, must be {}", values.size(), names_.size()));
   }
   bio::ParameterCatalogue::Setting setting = live.catalogue.at(live.selection, values(live.given));
-  bio::MusculoskeletalSystem system(setting.model, choice_.system);
+  bio::MusculoskeletalSystem system =
+      changedSystem(model_, setting.model, choice_.system, nominal_);
   bio::SimulationOptions options = live.simulation;
   options.integrator = integrator;
   options.step = step;

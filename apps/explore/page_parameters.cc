@@ -18,27 +18,26 @@ constexpr std::size_t mostByDefault = 12;
 /// More are not ranked by what they do to the motion: that would take long.
 constexpr std::size_t mostRanked = 400;
 
-/// The last model, which the page shows first, with the trials as it reads them.
-struct Shown {
-  const ExploredModel& model;
-  bio::MusculoskeletalSystem system;
+/// A model of the page, with the trials as it reads them.
+struct StudiedModel {
+  const bio::MusculoskeletalSystem& system;
   std::vector<bio::StudiedTrial> trials;
 };
 
-Shown shownModel(const ParameterQuestion& question) {
-  const ExploredModel& model = question.models.back();
-  Shown shown{model, bio::MusculoskeletalSystem(model.model, question.system), {}};
+StudiedModel studied(const ExploredModel& model, const bio::MusculoskeletalSystem& system,
+                     const ParameterQuestion& question) {
+  StudiedModel studied{system, {}};
   for (const TrialInput& input : question.inputs) {
-    shown.trials.push_back(bio::studiedTrial(input.trial, model.model, shown.system,
-                                             {input.start.q, input.start.qDot, {}},
-                                             input.recorded.simulation));
+    studied.trials.push_back(bio::studiedTrial(input.trial, model.model, system,
+                                               {input.start.q, input.start.qDot, {}},
+                                               input.recorded.simulation));
   }
-  return shown;
+  return studied;
 }
 
 /// The coordinates that the first trial measures, or the first free one, with their noise.
 std::vector<bio::ChannelCandidate> observedIn(const ParameterQuestion& question,
-                                              const Shown& shown) {
+                                              const StudiedModel& shown) {
   std::vector<bio::ChannelCandidate> observed;
   for (const bio::Coordinate& one : shown.system.skeleton().coordinates()) {
     const bio::Observable what = bio::ofCoordinate(one.name);
@@ -49,11 +48,12 @@ std::vector<bio::ChannelCandidate> observedIn(const ParameterQuestion& question,
   return observed;
 }
 
-bio::SensitivityQuestion sensitivityQuestion(const ParameterQuestion& question, const Shown& shown,
+bio::SensitivityQuestion sensitivityQuestion(const ParameterQuestion& question,
+                                             const StudiedModel& shown,
                                              std::vector<std::size_t> selection) {
   const bio::Coordinate& first = shown.system.skeleton().coordinates().front();
   bio::SensitivityQuestion asked;
-  asked.system = question.system;
+  asked.system = question.options;
   asked.coordinate = first.name;
   asked.noise = question.noise / bio::positionUnit(first.isRotation).factor;
   asked.observed = observedIn(question, shown);
@@ -62,7 +62,8 @@ bio::SensitivityQuestion sensitivityQuestion(const ParameterQuestion& question, 
 }
 
 /// Those that move the motion most per standard deviation of their priors.
-std::vector<std::string> mostInfluential(const ParameterQuestion& question, const Shown& shown) {
+std::vector<std::string> mostInfluential(const ParameterQuestion& question,
+                                         const StudiedModel& shown) {
   const bio::ParameterCatalogue& catalogue = shown.trials.front().catalogue;
   std::vector<std::size_t> all;
   for (std::size_t i = 0; i < catalogue.parameters().size(); ++i) {
@@ -114,18 +115,9 @@ std::vector<std::string> ofVerdict(const EarlierVerdict& verdict,
   return names;
 }
 
-std::vector<bio::ParameterCatalogue> catalogues(const ParameterQuestion& question) {
-  std::vector<bio::ParameterCatalogue> all;
-  const TrialInput& input = question.inputs.front();
-  for (const ExploredModel& one : question.models) {
-    const bio::MusculoskeletalSystem system(one.model, question.system);
-    all.emplace_back(one.model, system, bio::StartPoint{input.start.q, input.start.qDot, {}});
-  }
-  return all;
-}
-
 /// What the trials say of the parameters that the shown model has.
-void addInformation(const ParameterQuestion& question, const Shown& shown, PageParameters& page) {
+void addInformation(const ParameterQuestion& question, const StudiedModel& shown,
+                    PageParameters& page) {
   const bio::ParameterCatalogue& catalogue = shown.trials.front().catalogue;
   if (!bio::isVariational(shown.trials.front().recorded.simulation.integrator)) return;
   std::vector<std::size_t> selection;
@@ -222,8 +214,17 @@ Json PageParameters::covarianceJson() const {
 }
 
 PageParameters pageParameters(const ParameterQuestion& question) {
-  const Shown shown = shownModel(question);
-  const std::vector<bio::ParameterCatalogue> all = catalogues(question);
+  // of each model; they must not move
+  std::vector<bio::MusculoskeletalSystem> others;
+  others.reserve(question.models.size());
+  std::vector<StudiedModel> models{studied(question.models.front(), question.system, question)};
+  for (std::size_t i = 1; i < question.models.size(); ++i) {
+    others.emplace_back(question.models[i].model, question.options);
+    models.push_back(studied(question.models[i], others.back(), question));
+  }
+  std::vector<bio::ParameterCatalogue> all;
+  for (const StudiedModel& model : models) all.push_back(model.trials.front().catalogue);
+  const StudiedModel& shown = models.back();
   std::vector<std::string> names;
   if (!question.names.empty()) {
     for (const std::size_t i : all.back().select(question.names))

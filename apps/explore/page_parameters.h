@@ -37,8 +37,9 @@ struct PageParameters {
 
 struct ParameterQuestion {
   const std::vector<ExploredModel>& models;
-  const std::vector<TrialInput>& inputs;  ///< of the first model
-  bio::SystemOptions system;
+  const bio::MusculoskeletalSystem& system;  ///< of the first model
+  const std::vector<TrialInput>& inputs;     ///< of the first model
+  bio::SystemOptions options;
   std::vector<std::string> names;  ///< as typed; empty: the most influential
   double noise;                    ///< [deg] or [mm]
   const std::optional<EarlierVerdict>& verdict;

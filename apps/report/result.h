@@ -13,7 +13,7 @@ namespace app {
 void deliver(const CommandContext& context, const Summary& summary, const Report& report,
              OutputFolder& folder);
 
-/// The same for a subcommand whose report is a page of its own.
+/// deliver() for a subcommand whose report is a page of its own.
 /// @param verdict  one sentence or two
 /// @param page     HTML
 void deliverPage(const CommandContext& context, const Summary& summary, const std::string& verdict,

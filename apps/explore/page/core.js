@@ -1,5 +1,5 @@
 "use strict";
-// The simulation core (core/live_exports.cc) as an object; in the page's worker, and in tests.
+// The simulation core (webassembly/live_exports.cc) as an object; in the page's worker, and in tests.
 
 const Role = { free: 0, locked: 1, prescribed: 2, held: 3, cylinder: 4, starts: 5, ignoreExtra: 6 };
 const Series = { times: 0, coordinates: 1, speeds: 2, activations: 3, fibreLengths: 4, excitations: 5, forces: 6, measured: 7 };

@@ -72,14 +72,14 @@ class Curves {
 
   showFit(state, trial, result, channel) {
     const fit = document.getElementById("fit");
-    const speed = `one simulation: ${result.milliseconds.toFixed(result.milliseconds < 10 ? 1 : 0)} ms`;
+    const speed = `One simulation: ${result.milliseconds.toFixed(result.milliseconds < 10 ? 1 : 0)} ms`;
     if (channel.measured < 0) {
-      fit.textContent = `${channel.name} was not measured. ${speed}`;
+      fit.textContent = `${channel.name} was not measured. ${speed}.`;
       return;
     }
     const left = this.residuals(result, trial, channel);
     const before = Curves.rms(this.residuals(state.reference, trial, channel));
-    fit.textContent = `RMS error ${Curves.rms(left).toPrecision(3)} ${channel.unit} (as given: ${before.toPrecision(3)} ${channel.unit}); ${speed}`;
+    fit.textContent = `RMS error ${Curves.rms(left).toPrecision(3)} ${channel.unit} (as given: ${before.toPrecision(3)} ${channel.unit}). ${speed}.`;
     this.residual.setData([channel.times, left]);
   }
 

@@ -239,6 +239,7 @@
   sliders.show(state.values);
   sliders.enable(data.models[state.model].parameters);
   showCommand();
+  $("fit").textContent = "Compiling the model …";
   const setups = data.models.map(model => ({ ...model.setup, files: { ...data.files } }));
   try {
     await ask("load", { wasm: await unpacked($("core").textContent), setups });
@@ -246,6 +247,7 @@
     setTimeRange();
     await simulate();
     if (ellipse) ellipse.show(state.values);
+    performance.mark("first picture");
     document.body.dataset.ready = "yes";
   } catch (error) {
     trouble(error.message);

@@ -21,7 +21,7 @@ class Sliders {
     const head = document.createElement("div");
     head.className = "head";
     const label = document.createElement("label");
-    label.textContent = p.name;
+    p.name.split(/(?<=[._])/).forEach(part => label.append(part, document.createElement("wbr")));
     label.htmlFor = `parameter${index}`;
     const number = document.createElement("input");
     Object.assign(number, { type: "number", className: "value", step: "any" });
