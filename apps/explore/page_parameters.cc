@@ -101,7 +101,8 @@ std::vector<std::string> ofVerdict(const EarlierVerdict& verdict,
                                    const bio::ParameterCatalogue& given) {
   std::vector<std::string> names;
   for (const bio::ModelParameter& one : shown.parameters()) {
-    if (!one.isGroup && !given.has(one.name)) names.push_back(one.name);
+    // a damper is a spring without stiffness: what is 0 was not estimated
+    if (!one.isGroup && one.value != 0 && !given.has(one.name)) names.push_back(one.name);
   }
   std::vector<EarlierVerdict::Fitted> fitted = verdict.fitted;
   std::stable_sort(fitted.begin(), fitted.end(),

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "options/number_rules.h"
 #include "options/trial_input.h"
@@ -50,8 +51,8 @@ class Render : public Command {
     addModelArgument(options, options_.model);
     options
         .add_option("STATES", options_.states,
-                    "motion: states.sto of a simulation, or a table of the coordinates")
-        ->required()
+                    "motion: states.sto of a simulation, or a table of the coordinates; without "
+                    "it, one posture: the model's default values, and those of --lock")
         ->check(CLI::ExistingFile)
         ->type_name("");
     auto* time = options.add_option("--time", options_.time,
@@ -77,6 +78,11 @@ class Render : public Command {
                     "folder of the .vtp files that the model names")
         ->check(CLI::ExistingDirectory)
         ->type_name("DIR");
+    options
+        .add_option("--activation-max", options_.largestActivation,
+                    "activation with the last colour, 0 to 1; default: the largest that occurs")
+        ->check(CLI::Range(0.001, 1.0))
+        ->type_name("ACTIVATION");
     options.add_flag("--show-wraps", options_.showWraps, "draw the wrap surfaces, translucent");
     options
         .add_option_function<std::string>(
@@ -101,6 +107,14 @@ class Render : public Command {
   ExitStatus run(const CommandContext& context) override {
     if (!context.out) {
       throw std::invalid_argument("--out is required: pictures are written into this folder");
+    }
+    if (options_.states.empty()) {
+      for (const auto& [isGiven, option] :
+           {std::pair(options_.film, "--film"), std::pair(options_.time.has_value(), "--time"),
+            std::pair(!options_.ghost.empty(), "--ghost")}) {
+        if (isGiven)
+          throw std::invalid_argument(fmt::format("{}: needs STATES, a motion to show", option));
+      }
     }
     if (options_.film && (options_.width % 2 != 0 || options_.height % 2 != 0)) {
       throw std::invalid_argument(fmt::format("--size {}x{}: must be even numbers for a film",

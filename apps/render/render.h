@@ -14,7 +14,7 @@ namespace app {
 /// Options of `render`, as typed.
 struct RenderOptions {
   std::string model;
-  std::string states;
+  std::string states;          ///< empty: the posture of the default and the locked values
   std::optional<double> time;  ///< of a single picture [s]; without: the middle of the motion
   bool film = false;
   double framesPerSecond = 30;  ///< > 0
@@ -24,8 +24,9 @@ struct RenderOptions {
   std::string geometry;  ///< folder of .vtp files
   bool showWraps = false;
   bool thicknessByForce = true;
-  std::string ghost;       ///< a second motion
-  std::string ghostModel;  ///< model of the second motion; empty: the same
+  std::optional<double> largestActivation;  ///< with the last colour, 0 to 1; without: what occurs
+  std::string ghost;                        ///< a second motion
+  std::string ghostModel;                   ///< model of the second motion; empty: the same
   bool ignoreExtra = false;
   SimulationOptions simulation;  ///< only the model options
 };

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "bio/model/units.h"
+#include "bio/skeleton/free_coordinates.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
@@ -74,7 +76,8 @@ Report reportOn(const RenderOptions& options, const MovingSystem& system,
                 const std::string& verdict) {
   const view::SystemMotion& motion = system.motion();
   Report report;
-  report.title = fmt::format("{} on {}", options.states, options.model);
+  report.title = options.states.empty() ? fmt::format("Posture of {}", options.model)
+                                        : fmt::format("{} on {}", options.states, options.model);
   report.verdict = verdict;
   Figure shown{.title = "Activations (colour of the muscles)",
                .xLabel = "Time [s]",
@@ -125,17 +128,41 @@ struct Shown {
   std::optional<MovingSystem> system;      ///< never empty once read
   std::vector<std::vector<double>> radii;  ///< of its muscles, by moment [m]
   bool thicknessIsForce = false;
+  double largestActivation = 1;
   std::optional<MovingSystem> ghost;
   std::vector<double> ghostRadii;
   std::string ghostCaption;
 };
 
+/// One posture as a motion: the values of --lock, else the model's defaults.
+view::SystemMotion postureOf(const bio::Model& model, const SimulationOptions& options) {
+  view::SystemMotion motion;
+  motion.time = Eigen::VectorXd::Zero(1);
+  for (const auto& [name, value] : byName(options.locks)) {
+    (void)bio::findCoordinate(model, name);
+    motion.coordinates[name] = Eigen::VectorXd::Constant(1, value);
+  }
+  return motion;
+}
+
+/// The largest activation that occurs, rounded up to twentieths; 1 if none is known.
+double largestActivation(const view::SystemMotion& motion) {
+  double largest = 0;
+  for (const auto& [muscle, values] : motion.activations)
+    largest = std::max(largest, values.maxCoeff());
+  return motion.activations.empty() ? 1 : std::clamp(std::ceil(20 * largest) / 20, 0.05, 1.0);
+}
+
 Shown readShown(const RenderOptions& options, Summary& summary) {
   Shown shown;
   const bio::Model model = readModel(options.model, summary);
-  summary.addInput(options.states);
-  view::SystemMotion motion = view::readSystemMotion(options.states, model, options.ignoreExtra);
-  shown.times = shownTimes(options, motion);
+  const bool isPosture = options.states.empty();
+  if (!isPosture) summary.addInput(options.states);
+  view::SystemMotion motion =
+      isPosture ? postureOf(model, options.simulation)
+                : view::readSystemMotion(options.states, model, options.ignoreExtra);
+  shown.times = isPosture ? motion.time : shownTimes(options, motion);
+  shown.largestActivation = options.largestActivation.value_or(largestActivation(motion));
   std::vector<const view::SystemMotion*> motions = {&motion};
 
   bio::Model otherModel;
@@ -154,8 +181,13 @@ Shown readShown(const RenderOptions& options, Summary& summary) {
 
   bio::SystemOptions systemOptions = app::systemOptions(options.simulation);
   systemOptions.skeleton = view::skeletonFor(model, motions, systemOptions.skeleton);
+  if (isPosture) {
+    systemOptions.skeleton.freeCoordinates = bio::freeByDefault(model, {}, {});
+    for (const std::string& name : systemOptions.skeleton.freeCoordinates)
+      systemOptions.skeleton.lockedValues.erase(name);  // it is in the motion
+  }
   view::TendonForces forces;
-  if (options.thicknessByForce) {
+  if (options.thicknessByForce && !isPosture) {
     forces = view::tendonForces(model, systemOptions, motion, shown.times);
     if (forces.byMuscle.empty()) {
       summary.warn(fmt::format("muscles are drawn with a fixed thickness: {}", forces.whyNone));
@@ -196,6 +228,19 @@ std::vector<Eigen::Vector3d> outlineOf(const Shown& shown, bool& ghostIsSeen) {
   return outline;
 }
 
+/// Why muscles are grey, for the caption; empty if none is.
+std::string greyMuscles(const MovingSystem& system, const std::string& file) {
+  const std::vector<std::string>& all = system.poser().muscles();
+  const auto grey = std::count_if(all.begin(), all.end(), [&](const std::string& muscle) {
+    return !system.motion().activations.contains(muscle);
+  });
+  if (grey == 0) return "";
+  if (file.empty()) return "; grey: a posture has no activations";
+  const bool areAll = grey == static_cast<std::ptrdiff_t>(all.size());
+  return fmt::format("; grey{}: no activation in {}",
+                     areAll ? "" : fmt::format(" ({} of {})", grey, all.size()), file);
+}
+
 view::SceneOptions sceneOptions(const RenderOptions& options, const Shown& shown,
                                 const std::vector<Eigen::Vector3d>& outline) {
   view::SceneOptions scene;
@@ -208,14 +253,16 @@ view::SceneOptions sceneOptions(const RenderOptions& options, const Shown& shown
     scene.floor = std::min(scene.floor, point.y() - 0.03);
     scene.middle += point / static_cast<double>(outline.size());
   }
+  scene.largestActivation = shown.largestActivation;
+  scene.showsActivations = !shown.system->motion().activations.empty();
+  scene.showsTime = !options.states.empty();
+  const std::string file = std::filesystem::path(options.states).filename().string();
   scene.captions = {
-      fmt::format("{} – {}", shown.system->modelName(),
-                  std::filesystem::path(options.states).filename().string()),
-      fmt::format(
-          "Muscles: {}{}",
-          shown.thicknessIsForce ? "cross-section grows by 1 mm² per 5 N of tendon force"
-                                 : "equal thickness",
-          shown.system->motion().activations.empty() ? "; grey: activation not given" : "")};
+      fmt::format("{} – {}", shown.system->modelName(), file.empty() ? "posture" : file),
+      fmt::format("Muscles: {}{}",
+                  shown.thicknessIsForce ? "cross-section grows by 1 mm² per 5 N of tendon force"
+                                         : "equal thickness",
+                  greyMuscles(*shown.system, file))};
   if (shown.ghost) scene.captions.push_back(shown.ghostCaption);
   return scene;
 }
@@ -269,7 +316,7 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
       take(k, image);
       if (k != times.size() / 2) continue;
       embedded.png = view::pngOf(image);
-      embedded.caption = fmt::format("t = {} s", numberText(times[k]));
+      if (!options.states.empty()) embedded.caption = fmt::format("t = {} s", numberText(times[k]));
     }
   };
 
@@ -288,8 +335,9 @@ ExitStatus drawPictures(const RenderOptions& options, const CommandContext& cont
       folder.write(options.film ? frameName(k) : "picture.png",
                    [&](std::ostream& out) { out << view::pngOf(image); });
     });
-    verdict = options.film ? fmt::format("{} frames of a film.", times.size())
-                           : fmt::format("A picture at {} s.", numberText(times[0]));
+    verdict = options.film             ? fmt::format("{} frames of a film.", times.size())
+              : options.states.empty() ? std::string("A picture of one posture.")
+                                       : fmt::format("A picture at {} s.", numberText(times[0]));
   }
   if (options.film && !toFilm) {
     summary.warn(

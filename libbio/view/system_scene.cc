@@ -72,7 +72,7 @@ bool sameBones(const BodyShape& a, const BodyShape& b) {
   const auto same = [](const TaperedBone& bone, const TaperedBone& other) {
     return bone.from == other.from && bone.to == other.to && bone.shaftRadius == other.shaftRadius;
   };
-  return a.geometryFiles == b.geometryFiles &&
+  return a.geometryFiles == b.geometryFiles && a.geometryScales == b.geometryScales &&
          std::equal(a.bones.begin(), a.bones.end(), b.bones.begin(), b.bones.end(), same);
 }
 
@@ -211,7 +211,7 @@ struct SystemScene::Parts {
   void addMuscles() {
     constexpr int count = 256;
     colours->SetNumberOfTableValues(count);
-    colours->SetRange(0, 1);
+    colours->SetRange(0, options.largestActivation);
     for (int i = 0; i < count; ++i) {
       const Colour colour = viridis(i / (count - 1.0));
       colours->SetTableValue(i, colour[0], colour[1], colour[2]);
@@ -238,7 +238,7 @@ struct SystemScene::Parts {
     vtkNew<vtkScalarBarActor> bar;
     bar->SetLookupTable(colours);
     bar->SetNumberOfLabels(6);
-    bar->SetLabelFormat("%.1f");
+    bar->SetLabelFormat(options.largestActivation < 0.5 ? "%.2f" : "%.1f");
     bar->SetTitle("");
     bar->UnconstrainedFontSizeOn();
     setFont(bar->GetLabelTextProperty(), false);
@@ -272,7 +272,7 @@ struct SystemScene::Parts {
     grid->SetInput("Ground: squares of 0.1 m");
     grid->GetTextProperty()->SetJustificationToRight();
     writeAt(grid, 0.98, 0.025, 18);
-    writeAt(clock, 0.02, 0.025, 24, true);
+    if (options.showsTime) writeAt(clock, 0.02, 0.025, 24, true);
   }
 };
 
@@ -301,7 +301,7 @@ SystemScene::SystemScene(const std::vector<BodyShape>& bodies, const std::vector
                                      options.geometry.string(), fmt::join(unusable, ", ")));
   }
   p.addMuscles();
-  p.addLegend();
+  if (options.showsActivations) p.addLegend();
   p.addCaptions();
 }
 

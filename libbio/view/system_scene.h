@@ -17,6 +17,9 @@ struct SceneOptions {
   bool showWraps = false;          ///< wrap surfaces, translucent
   std::filesystem::path geometry;  ///< folder of the .vtp files that the model names; may be empty
   std::vector<std::string> captions;                 ///< lines at the top left
+  double largestActivation = 1;                      ///< with the last colour > 0
+  bool showsActivations = true;                      ///< the scale of their colours
+  bool showsTime = true;                             ///< at the bottom left
   double floor = 0;                                  ///< height of the ground plane [m]
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of the ground plane [m]
 };

@@ -102,6 +102,7 @@ std::vector<BodyShape> bodyShapes(const Model& model) {
     BodyShape shape;
     shape.name = body.name;
     shape.geometryFiles = body.geometryFiles;
+    shape.geometryScales = body.geometryScales;
     shape.bones = bonesOf(model, body);
     for (const Joint& joint : model.joints) {
       if (joint.childBody != body.name || joint.kind == JointKind::weld || shape.bones.empty()) {

@@ -256,7 +256,7 @@
 
   // For scripts and tests: sets values by name and waits for what is simulated with them.
   window.explore = {
-    state,
+    state, view,
     set(values) {
       for (const [name, value] of Object.entries(values))
         state.values[data.parameters.findIndex(p => p.name === name)] = value;

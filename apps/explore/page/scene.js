@@ -109,7 +109,7 @@ function wrapMesh(kind, X, radius, length, outer, semiAxes, material) {
   const group = new THREE.Group();
   let geometry;
   if (kind === 0) {
-    geometry = new THREE.CylinderGeometry(radius, radius, length, 32, 1, true);
+    geometry = new THREE.CylinderGeometry(radius, radius, length, 32);
     geometry.rotateX(Math.PI / 2);  // its axis is z
   } else if (kind === 3) {
     geometry = new THREE.TorusGeometry(outer, radius, 12, 40);

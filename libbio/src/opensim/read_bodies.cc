@@ -30,14 +30,26 @@ std::array<double, 6> readInertia(const Source& source, const Element& element) 
   return inertia;
 }
 
-// Meshes anywhere below the body, in the order of the file.
-void collectGeometry(const Element& element, std::vector<std::string>& files) {
+Eigen::Vector3d scaleOf(const Source& source, const Element& element) {
+  const auto s =
+      readNumbers(source, element, "scale_factors", "1", 3, std::vector<double>{1, 1, 1});
+  return {s[0], s[1], s[2]};
+}
+
+// Meshes anywhere below the body, in the order of the file; OpenSim 3 scales all of a body, too.
+void collectGeometry(const Source& source, const Element& element, const Eigen::Vector3d& scale,
+                     Body& body) {
   for (const Element* child : childrenOf(&element)) {
     const std::string_view tag = child->Name();
     if (tag == "mesh_file" || tag == "geometry_file") {
-      if (const std::string file = trimmedText(child); !file.empty()) files.push_back(file);
+      const std::string file = trimmedText(child);
+      if (file.empty()) continue;
+      body.geometryFiles.push_back(file);
+      body.geometryScales.push_back(scale.cwiseProduct(scaleOf(source, element)));
+    } else if (tag == "VisibleObject") {
+      collectGeometry(source, *child, scale.cwiseProduct(scaleOf(source, *child)), body);
     } else if (tag != "Joint") {
-      collectGeometry(*child, files);
+      collectGeometry(source, *child, scale, body);
     }
   }
 }
@@ -73,7 +85,7 @@ void readBodies(Reading& reading, const Element& model) {
     body.inertia = readInertia(source, *element);
     // as in OpenSim, whatever the file says
     if (!(body.mass > 0)) body.inertia = {};
-    collectGeometry(*element, body.geometryFiles);
+    collectGeometry(source, *element, Eigen::Vector3d::Ones(), body);
     reading.model.bodies.push_back(std::move(body));
   }
 }

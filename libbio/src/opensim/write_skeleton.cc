@@ -11,6 +11,8 @@ void appendGeometry(Element& element, const Body& body) {
     Element& mesh = append(geometry, "Mesh", fmt::format("{}_geom_{}", body.name, i + 1));
     appendText(mesh, "socket_frame", "..");
     appendText(mesh, "mesh_file", body.geometryFiles[i]);
+    if (i < body.geometryScales.size() && body.geometryScales[i] != Eigen::Vector3d::Ones())
+      appendNumbers(mesh, "scale_factors", body.geometryScales[i]);
   }
 }
 

@@ -187,4 +187,41 @@ TEST_F(RenderCommand, KilledInTheMiddleItLeavesNoServer) {
   expectNothingLeftRunning();
 }
 
+TEST_F(RenderCommand, ColoursReachWhatOccursUnlessToldOtherwise) {
+  ASSERT_EQ(render({}).status, 0);
+  const std::string occurring = contentOf(scratch_ / "out/picture.png");
+  ASSERT_EQ(render({"--force", "--activation-max", "0.9"}).status, 0);
+  EXPECT_EQ(contentOf(scratch_ / "out/picture.png"), occurring);
+  ASSERT_EQ(render({"--force", "--activation-max", "0.5"}).status, 0);
+  EXPECT_NE(contentOf(scratch_ / "out/picture.png"), occurring);
+  EXPECT_EQ(render({"--force", "--activation-max", "0"}).status, 2);
+}
+
+TEST_F(RenderCommand, WithoutAMotionItDrawsOnePosture) {
+  const auto drawn = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {"env",
+                                      "-u",
+                                      "DISPLAY",
+                                      FISHERHILL_PROGRAM_FOLDER "/fisherhill",
+                                      "render",
+                                      modelFile,
+                                      "--size",
+                                      "160x120",
+                                      "--force",
+                                      "--out",
+                                      (scratch_ / "out").string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return support::runProgram(words);
+  };
+  ASSERT_EQ(drawn({}).status, 0);
+  const std::string atDefault = contentOf(scratch_ / "out/picture.png");
+  const ProgramResult bent = drawn({"--lock", "elbow_flexion=90deg"});
+  ASSERT_EQ(bent.status, 0) << bent.err;
+  EXPECT_NE(contentOf(scratch_ / "out/picture.png"), atDefault);
+  EXPECT_THAT(bent.out, HasSubstr("one posture"));
+  EXPECT_THAT(drawn({"--film"}).err, HasSubstr("--film: needs STATES"));
+  EXPECT_THAT(drawn({"--time", "1"}).err, HasSubstr("--time: needs STATES"));
+  EXPECT_THAT(drawn({"--lock", "elbow_bend=1"}).err, HasSubstr("elbow_bend"));
+}
+
 }  // namespace

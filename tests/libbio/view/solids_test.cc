@@ -47,6 +47,17 @@ TEST_F(GeometryFile, IsDrawnWhereItsPointsAre) {
   EXPECT_NEAR(bounds[5], 0.32, 1e-6);
 }
 
+TEST_F(GeometryFile, HasTheScaleThatTheModelGives) {
+  ball("bone.vtp", {0.1, 0, 0}, 0.02);
+  BodyShape body;
+  body.geometryFiles = {"bone.vtp"};
+  body.geometryScales = {{2, 1, 3}};
+  double bounds[6];
+  meshFromFiles(body, scratch.path(), unusable)->GetBounds(bounds);
+  EXPECT_NEAR((bounds[0] + bounds[1]) / 2, 0.2, 1e-3);
+  EXPECT_NEAR(bounds[5], 0.06, 1e-6);
+}
+
 TEST_F(GeometryFile, SeveralOfABodyAreJoinedAndFoldersInNamesPassedOver) {
   ball("radius.vtp", {0, 0, 0}, 0.02);
   ball("ulna.vtp", {1, 0, 0}, 0.02);

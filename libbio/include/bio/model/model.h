@@ -32,6 +32,7 @@ struct Body {
   std::array<double, 6> inertia = {0, 0, 0,
                                    0, 0, 0};  ///< xx yy zz xy xz yz about massCenter [kg m²]
   std::vector<std::string> geometryFiles;     ///< .vtp names, for pictures only
+  std::vector<Eigen::Vector3d> geometryScales = {};  ///< of each of them along x, y and z
   friend bool operator==(const Body&, const Body&) = default;
 };
 
