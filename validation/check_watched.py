@@ -24,6 +24,7 @@ EXCEPTIONS = {
     "recorded_curls": SHARED,
     "free_pendulum.py": "needs published recordings, which are not part of the project",
     "driven_pendulum.py": "needs published recordings, which are not part of the project",
+    "heavy_slide.py": "a minute or more of processor time for a set, in which three effects are found one after another",
     "opensim_sets.py": "needs sets that OpenSim made, which are not part of the project",
     "make_trials.py": "needs the published recordings, which are not part of the project",
     "replay_reports.py": "needs verdicts of a search",

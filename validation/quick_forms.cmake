@@ -42,6 +42,8 @@ set_tests_properties(Quick.OwnEffects PROPERTIES PASS_REGULAR_EXPRESSION "own: 1
 fisherhill_quick(HiddenDrives ${python} validation/discovery/drives/hidden_drives.py --build ${PROJECT_BINARY_DIR}
   --only pendulum:delay --only slide:none --sets 1 ${quick}/drives)
 set_tests_properties(Quick.HiddenDrives PROPERTIES PASS_REGULAR_EXPRESSION "Of 1 hidden effects 1 are in the class .*of 1 sets with nothing hidden 0 have a name")
+fisherhill_quick(HiddenChains ${python} validation/discovery/chains/hidden_chains.py --build ${PROJECT_BINARY_DIR} --sets 1 ${quick}/chains)
+set_tests_properties(Quick.HiddenChains PROPERTIES PASS_REGULAR_EXPRESSION "Of 1 hidden effects 1 are in the class")
 find_program(mpirun mpirun)
 if(mpirun AND TARGET fisherhill-mpi)
   fisherhill_quick(KillRanks validation/robustness/kill_ranks ${program} 1 1)

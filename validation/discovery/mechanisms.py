@@ -48,9 +48,9 @@ def rk4(slope, t, y, h):
     return [a + h / 6 * (b + 2 * c + 2 * d + e) for a, b, c, d, e in zip(y, k1, k2, k3, k4)]
 
 
-def verdict(program, folder, *further):
-    """Of model.osim on t0.csv, t1.csv and, held out, t2.csv, in steps of 5 ms, by one thread."""
-    command = [program, "discover", "model.osim", "t0.csv", "t1.csv", "--hold-out", "t2.csv", *further, "--step", "0.005", "--threads", "1", "--out", "out", "--force"]
+def verdict(program, folder, *further, model="model.osim"):
+    """Of a model on t0.csv, t1.csv and, held out, t2.csv, in steps of 5 ms, by one thread."""
+    command = [program, "discover", model, "t0.csv", "t1.csv", "--hold-out", "t2.csv", *further, "--step", "0.005", "--threads", "1", "--out", "out", "--force"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1):
         raise RuntimeError(f"{folder}: {done.stderr.strip()}")

@@ -151,6 +151,7 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
                             (isDriven ? 1 : passiveFloor * unitsOf(encompassing_, at).strength));
     axes_.push_back(at.coordinate.isRotation ? info::discover::Axis{name, "rad", "N·m"}
                                              : info::discover::Axis{name, "m", "N"});
+    if (!isDriven) axes_.back().smallSpeed = unitsOf(encompassing_, at).frictionWidth;
   }
   encompassing_.trialsLast(lastStart, firstEnd);
   encompassing_.forget(unsaturated(encompassing_, withFlatTops(trials)));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <type_traits>
 
 #include "bio/opensim/osim_file.h"
 #include "bio/tables/trial.h"
@@ -34,7 +35,8 @@ inline double viscous(double speed) {
   return frictionPerMass * speed;
 }
 
-/// Its damped swing by RK4, with 0.2 degrees of noise; the same for any mass.
+/// Its swing by RK4, with 0.2 degrees of noise; the same for any mass.
+/// @param resistance over the mass [N m/kg], of the speed or of position and speed
 template <class Resistance>
 Trial freeSwing(double from, unsigned seed, const Resistance& resistance) {
   Trial trial;
@@ -45,7 +47,12 @@ Trial freeSwing(double from, unsigned seed, const Resistance& resistance) {
   std::mt19937 generator(seed);
   std::normal_distribution<double> noise(0, 0.2 * std::acos(-1) / 180);
   const auto bend = [&](double q, double speed) {
-    return -9.81 / rodLength * std::sin(q) - resistance(speed) / (rodLength * rodLength);
+    double resists = 0;
+    if constexpr (std::is_invocable_v<Resistance, double, double>)
+      resists = resistance(q, speed);
+    else
+      resists = resistance(speed);
+    return -9.81 / rodLength * std::sin(q) - resists / (rodLength * rodLength);
   };
   double q = from, w = 0;
   const double h = 0.001;

@@ -101,6 +101,24 @@ TEST(UserEffects, StandBesideTheCatalogueUnderTheirOwnNamesOnly) {
   support::throwsSaying(build, "coordinate = \"knee\", which is not in question");
 }
 
+TEST(UserEffects, AreOfEveryCoordinateWhereNoneIsGiven) {
+  const std::string robot =
+      std::string(FISHERHILL_SOURCE_DIR) + "/models/robots/cart_double_pendulum.osim";
+  const std::vector<std::string> links = {"link1", "link2"};
+  const SystemOptions system{{links, {}}, {}, {}};
+  std::vector<UserEffect> own = readUserEffects({example});
+  const auto build = [&] {
+    return encompassingModel(readOsim(robot), system, links, {.own = own});
+  };
+  std::vector<std::string> ids;
+  const EncompassingModel model = build();
+  for (const auto& candidate : model.candidates())
+    if (candidate.id.find("thinning") != std::string::npos) ids.push_back(candidate.id);
+  EXPECT_THAT(ids, ElementsAre("link1.thinning", "link2.thinning"));
+  own.push_back(own.front());
+  support::throwsSaying(build, "id = \"thinning\", there is another effect of this name");
+}
+
 // The pendulum is damped by what the catalogue has no word for.
 TEST(UserEffects, AreFoundAndWritten) {
   const double mass = 2, amplitude = 0.12, speed = 0.8;

@@ -84,6 +84,62 @@ TEST(Formula, IsThatOfTheForceThatIsMissing) {
   EXPECT_LE(found.explained, 1);
 }
 
+// The oscillator with a force that changes its sign with the speed, in metres or in other units of
+// length.
+class Scaled : public LinearDisagreement {
+ public:
+  static constexpr double kSmallSpeed = 0.4;  // [m/s]
+
+  explicit Scaled(double unit)
+      : LinearDisagreement(2, 100), quantities_(LinearDisagreement::quantities()) {
+    axes_[0].unit = "m";
+    axes_[0].smallSpeed = unit * kSmallSpeed;
+    scale = MatrixXd::Constant(100, 1, unit);
+    VectorXd truth = nominalValues(*this);
+    truth.tail(4) << 0.9, -1.2, -0.7, 2;
+    draw(1, truth, kOutput, 0, kTime);
+    for (int t = 0; t < 2; ++t) {
+      const VectorXd noise = measured(t) - outputs(t, truth, {});
+      VectorXd y = outputs(t, truth, {});
+      for (Index k = 0; k < y.size(); ++k) {
+        VectorXd force = VectorXd::Zero(y.size());
+        for (Index i = 1; i < y.size(); ++i)
+          force[i] = -3 * std::tanh((y[i] - y[i - 1]) / kStep / kSmallSpeed);
+        y = outputs(t, truth, force);
+      }
+      measure(t, unit * (y + noise));
+    }
+    for (Quantity& quantity : quantities_) {
+      quantity.nominal *= unit;
+      quantity.sd *= unit;
+    }
+  }
+  const std::vector<Quantity>& quantities() const override { return quantities_; }
+  const std::vector<Axis>& axes() const override { return axes_; }
+
+ private:
+  std::vector<Quantity> quantities_;
+  std::vector<Axis> axes_{1};
+};
+
+TEST(Formula, IsTheSameInOtherUnits) {
+  const auto described = [](double unit) {
+    const Scaled data(unit);
+    const Likelihood likelihood(data, {0, 1}, nominalValues(data), kTime);
+    return describeUnknown(
+        likelihood, likelihood.fit(makeHypothesis(data, {}, {0, 1}), {unit * kOutput, 1, kTime},
+                                   nominalValues(data)));
+  };
+  const Unknown one = described(1), other = described(4);
+  ASSERT_FALSE(one.terms.empty());
+  ASSERT_EQ(other.terms.size(), one.terms.size()) << one.formula << ", " << other.formula;
+  EXPECT_EQ(one.terms[0].expression, "tanh(qdot/0.4)");
+  EXPECT_EQ(other.terms[0].expression, "tanh(qdot/1.6)");
+  EXPECT_LT(one.terms[0].coefficient, -2);
+  EXPECT_NEAR(other.terms[0].coefficient, 4 * one.terms[0].coefficient, 1e-6);
+  EXPECT_NEAR(other.evidence, one.evidence, 1e-6);
+}
+
 TEST(Formula, IsNoneWhereNothingIsMissing) {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const Unknown found = describedIn(withForce(seed, [](double) { return 0.0; }), 0.5);

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Are effects of the user's own (discover --effect) found as often as those of the catalogue?
 
-    python3 validation/discovery/own/own_effects.py [--build build/program] [--seed 1] [--sets 50] FOLDER
+    python3 validation/discovery/own/own_effects.py [--build build/program] [--only SYSTEM:EFFECT] [--seed 1] [--sets 50] FOLDER
 
 Three systems without muscles (those of scaled_twins.py: a driven slide, a free and a driven pendulum), simulated here by RK4. Every set hides one force of random size, of the catalogue (viscous damping, quadratic
 drag, stiffness, constant force) or of a TOML file (an eddy-current brake, whose force falls again at high speed, and a detent with so many notches), or nothing, in turn. All are searched with the same
-file of two effects. Printed is what was found in each, and how often the hidden effect came first. Exit status 1 if effects of the file are first less often than
+file of two effects. With --only all sets hide this one effect, which may also be `gain`, an angle that is read too large. Printed is what was found in each, and how often the hidden effect came first. Exit status 1 if effects of the file are first less often than
 those of the catalogue, by more than chance (a one-sided 5 % test).
 """
 import argparse
@@ -25,6 +25,7 @@ SIZES = {  # of each system: force, speed, distance from the mean (root mean squ
     "pendulum": (2.0, 2.8, 0.69),
     "driven_pendulum": (0.6, 0.5, 0.14),
 }
+twins.RESISTANCES["gain"] = lambda value, q, w: 0.0
 twins.RESISTANCES["brake"] = lambda value, q, w: -value[0] * w / (1 + (w / value[1]) ** 2)
 twins.RESISTANCES["detent"] = lambda value, q, w: -value[0] * math.sin(value[1] * q)
 
@@ -34,7 +35,7 @@ def value_of(effect, system, chance):
     force, speed, distance = SIZES[system]
     share = force * math.exp(chance.uniform(math.log(0.05), math.log(0.4)))
     turn = speed * chance.uniform(0.4, 1)
-    return {"visc": share / speed, "drag": share / speed**2, "stiffness": share / distance, "const": share, "brake": (2 * share / turn, turn), "detent": (share, notches(system)), "": 0}[effect]
+    return {"visc": share / speed, "drag": share / speed**2, "stiffness": share / distance, "const": share, "brake": (2 * share / turn, turn), "detent": (share, notches(system)), "gain": chance.uniform(0.02, 0.15), "": 0}[effect]
 
 
 def notches(system):
@@ -101,6 +102,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--build", default="build/program")
+    parser.add_argument("--only")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--sets", type=int, default=50)
     asked = parser.parse_args()
@@ -108,8 +110,12 @@ def main():
     systems = [system for system in twins.SYSTEMS if system.name in SIZES]
     count = collections.Counter()
     print("| system | hidden | verdict | first | probability |\n|---|---|---|---|---|")
+    kinds = (("own", OWN), ("catalogue", CATALOGUE), ("nothing", ("",)))
+    if asked.only:
+        name, _, only = asked.only.partition(":")
+        systems, kinds = [system for system in systems if system.name == name], (("own" if only in OWN else "catalogue", (only,)),)
     for k in range(asked.sets):
-        for kind, effects in (("own", OWN), ("catalogue", CATALOGUE), ("nothing", ("",))):
+        for kind, effects in kinds:
             if kind == "nothing" and k % 3:
                 continue
             system = systems[k % len(systems)]
@@ -119,6 +125,8 @@ def main():
             value = value_of(effect, system.name, chance)
             motion = system.equations(effect or "const", value)
             motions = [within_range(system, motion, f"{seed} {trial}") for trial in range(3)]
+            if effect == "gain":
+                motions = [[(t, force, [(1 + value) * each for each in q]) for t, force, q in rows] for rows in motions]
             folder = twins.written(asked.folder / f"{kind}_{k}", system, motions, twins.ONE, seed)
             (folder / "effects.toml").write_text(file_of_effects(system.name, system.slides))
             verdict = mechanisms.verdict(program, folder, "--effect", "effects.toml")
@@ -133,8 +141,10 @@ def main():
             sure = verdict["effects"][0]["probability"] if found else None
             print(f"| {system.name} | {effect or 'nothing'} {size if effect else ''} | {verdict['verdict']} | {first or '–'} | {'–' if sure is None else f'{sure:.3f}'} |", flush=True)
     print()
-    for kind in ("own", "catalogue", "nothing"):
+    for kind, _ in kinds:
         print(f"{kind}: {count[kind, 'first']} of {count[kind]} first, {count[kind, 'in the class']} in the class, {count[kind, 'confidently wrong']} confidently wrong")
+    if asked.only:
+        return
     chance = right_by_chance(count["own", "first"], count["own"], count["catalogue", "first"], count["catalogue"])
     print(f"Probability that as few effects of the file are first by chance: {chance:.2f}")
     sys.exit(1 if chance < 0.05 else 0)

@@ -5,8 +5,8 @@
 
 Four systems without muscles, each with one effect in turn, simulated here by RK4: a slide that is driven, a pendulum that swings freely, one that is driven, and a
 double pendulum that swings freely. The twin of each has 50 times the mass and 4 times the length, in a gravity 4 times as strong, so that its times are the same. Both are searched. The verdicts must
-be the same, and every number found the twin's, scaled, within 0.3 of its deviation: each fit ends where a further step would gain less than 0.02 nats, 0.2 deviations. Whether the hidden
-effect is in the class is printed beside. --only may be repeated. Exit status 1 where twins differ.
+be the same, and the formula of an unknown force, and every number found the twin's, scaled, within 0.3 of its deviation: each fit ends where a further step would gain less than 0.02 nats, 0.2 deviations. Whether the hidden
+effect is in the class is printed beside. The slide's `nameless` is dry friction where the catalogue has neither that nor sub-linear damping. --only may be repeated. Exit status 1 where twins differ.
 """
 import argparse
 import dataclasses
@@ -53,6 +53,9 @@ RESISTANCES = {  # of a coordinate, by its position and speed
     "const": lambda value, q, w: value,
     "mass": lambda value, q, w: 0.0,
 }
+RESISTANCES["nameless"] = RESISTANCES["coulomb"]
+WITHOUT = {"nameless": ("--without", "coulomb,stribeck,powerdamp")}
+OF_FORMULAS = {"": "N", "q": "N/m", "q²": "N/m^2", "q³": "N/m^3", "q̇": "N/m", "q̇|q̇|": "N/m^2", "q̇³": "N/m^3", "tanh": "N", "q·q̇": "N/m^2"}  # on a slide; twins have the same second
 
 
 def slide(effect, value):
@@ -138,7 +141,7 @@ class System:
 
 
 SYSTEMS = [
-    System("slide", [("x", 1, 0)], 2.0, slide, {"visc": 0.8, "coulomb": 0.3, "drag": 0.8, "stiffness": 2.0, "const": 0.2, "mass": 0.3}),
+    System("slide", [("x", 1, 0)], 2.0, slide, {"visc": 0.8, "coulomb": 0.3, "drag": 0.8, "stiffness": 2.0, "const": 0.2, "mass": 0.3, "nameless": 0.3}),
     System("pendulum", [("swing", 1, 0.5)], 0, pendulum, {"visc": 0.05, "coulomb": 0.1, "drag": 0.03}),
     System("driven_pendulum", [("swing", 1, 0.5)], 1.2, pendulum, {"visc": 0.1, "coulomb": 0.2, "drag": 0.1, "stiffness": 0.8, "const": 0.3, "mass": 0.2}),
     System("double_pendulum", [("upper", 1, 0.5), ("lower", 0.6, 0.4)], 0, double_pendulum,
@@ -159,7 +162,15 @@ def numbers(verdict):
     return {name: (each["value"], each["sd"], each["unit"]) for effect in verdict["effects"] for name, each in effect["parameters"].items()}
 
 
-def difference(verdict, twins):
+def formula(verdict):
+    """Terms of the formula of an unknown force, {} if there is none, and the speed in its tanh."""
+    text = verdict.get("unknown", {}).get("formula", "")
+    speed = re.search(r"tanh\(q̇/([^)]*)\)", text)
+    parts = [part.partition("·") for part in re.sub(r"tanh\([^)]*\)", "tanh", text).split(" + ") if part]
+    return {name: float(number) for number, _, name in parts}, float(speed[1]) if speed else 0
+
+
+def difference(system, verdict, twins):
     """What differs; empty if nothing does."""
     if verdict["verdict"] != twins["verdict"]:
         return f"verdicts {verdict['verdict']} and {twins['verdict']}"
@@ -169,6 +180,11 @@ def difference(verdict, twins):
         scaled = numbers(twins)[name][0] / TWIN.of(unit)
         if abs(scaled - value) > 0.3 * sd:
             return f"{name} = {value:.4g} ± {sd:.2g} {unit} and, scaled, {scaled:.4g}"
+    (terms, speed), (scaled_terms, scaled_speed) = formula(verdict), formula(twins)
+    alike = terms.keys() == scaled_terms.keys() and all(
+        math.isclose(scaled_terms[name] / TWIN.of(OF_FORMULAS[name] if system.slides else "N m"), value, rel_tol=0.03) for name, value in terms.items())
+    if not alike or not math.isclose(scaled_speed, (TWIN.length if system.slides else 1) * speed, rel_tol=0.01):
+        return f"formulas {verdict['unknown']['formula']} and {twins['unknown']['formula']}"
     return ""
 
 
@@ -188,9 +204,10 @@ def main():
                 continue
             motions = [system.motion(system.equations(effect, value), 10 * asked.seed + k) for k in range(3)]
             verdict, twins = (
-                mechanisms.verdict(program, written(asked.folder / f"{system.name}_{effect}_{units.mass}", system, motions, units, asked.seed)) for units in (ONE, TWIN))
-            unlikeness = difference(verdict, twins)
+                mechanisms.verdict(program, written(asked.folder / f"{system.name}_{effect}_{units.mass}", system, motions, units, asked.seed), *WITHOUT.get(effect, ())) for units in (ONE, TWIN))
+            unlikeness = difference(system, verdict, twins)
             found = ", ".join(f"{key} {number:.4g} ± {sd:.2g} {unit}" for key, (number, sd, unit) in numbers(verdict).items())
+            found = found + "".join(f" [{number:.3g}·{name}]" for name, number in formula(verdict)[0].items())
             pairs, unlike, right = pairs + 1, unlike + bool(unlikeness), right + (effect in verdict["class"])
             print(f"| {system.name} | {effect} {value} | {verdict['verdict']} | {found or '–'} | {unlikeness or 'the same'} |", flush=True)
     print(f"\n{pairs - unlike} of {pairs} pairs have the same verdict; the hidden effect is in the class of {right}.")

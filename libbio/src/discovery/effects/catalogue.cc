@@ -120,20 +120,19 @@ void mustBeKnown(const EncompassingModel& encompassing, const std::vector<std::s
 
 void addUserEffect(EncompassingModel& model, const UserEffect& effect) {
   const auto& all = effectEntries();
-  bool isThere = false;
+  bool isThere = false, isTaken = model.knows(effect.id);
+  for (const EffectEntry& entry : all) isTaken = isTaken || effect.id == entry.id;
   for (const MovingCoordinate& at : model.coordinates()) {
     if (!effect.coordinate.empty() && effect.coordinate != at.coordinate.name) continue;
     isThere = true;
-    const bool isTaken = model.knows(model.idAt(at, effect.id)) || model.knows(effect.id) ||
-                         model.present().count(model.idAt(at, effect.id)) > 0 ||
-                         std::any_of(all.begin(), all.end(), [&](const EffectEntry& entry) {
-                           return effect.id == entry.id;
-                         });
-    if (isTaken)
-      throw std::invalid_argument(fmt::format(
-          "{}: id = \"{}\", there is another effect of this name", effect.file, effect.id));
-    addExpression(model, at, effect);
+    isTaken = isTaken || model.present().count(model.idAt(at, effect.id)) > 0;
   }
+  if (isTaken)
+    throw std::invalid_argument(fmt::format("{}: id = \"{}\", there is another effect of this name",
+                                            effect.file, effect.id));
+  for (const MovingCoordinate& at : model.coordinates())
+    if (effect.coordinate.empty() || effect.coordinate == at.coordinate.name)
+      addExpression(model, at, effect);
   if (isThere) return;
   throw std::invalid_argument(fmt::format("{}: coordinate = \"{}\", which is not in question",
                                           effect.file, effect.coordinate));

@@ -24,6 +24,13 @@ std::string limitOf(const EncompassingModel& model, const MovingCoordinate& at) 
   return {};
 }
 
+/// Without muscles a range is often a reader's default, and a spring is mounted for its middle as a
+/// rule: half of the prior is there.
+info::discover::Quantity restOf(const EncompassingModel& model, info::discover::Quantity rest) {
+  if (model.system().numMuscles() == 0) rest.nominalShare = 0.5;
+  return rest;
+}
+
 std::string resistingPart(const EncompassingModel& model) {
   return model.system().numMuscles() > 0 ? "Passive tissue" : "Something passive";
 }
@@ -46,8 +53,8 @@ void addStiffness(EncompassingModel& model, const MovingCoordinate& at) {
       {Meaning::Kind::shift,
        {{model.number(SpringForceTarget{law, SpringForceTarget::Quantity::stiffness}, 0)}}});
   const std::size_t rest = model.add(
-      shape(model.idAt(at, "stiffness.rest"), units.position, at.middle(), q.rangeMin, q.rangeMax,
-            0.3 * span),
+      restOf(model, shape(model.idAt(at, "stiffness.rest"), units.position, at.middle(), q.rangeMin,
+                          q.rangeMax, 0.3 * span)),
       {Meaning::Kind::shift,
        {{model.number(SpringForceTarget{law, SpringForceTarget::Quantity::restLength}, 0)}}});
   model.lawFollows({k, rest});
@@ -73,8 +80,8 @@ void addCubicStiffness(EncompassingModel& model, const MovingCoordinate& at) {
                  {"k", "r"},
                  {amplitude("cubic.stiffness", fmt::format("{}/{}^3", units.force, units.position),
                             0, 20 * size, 2 * size),
-                  shape("cubic.rest", units.position, middle, middle - 0.3 * span,
-                        middle + 0.3 * span, 0.15 * span)},
+                  restOf(model, shape("cubic.rest", units.position, middle, middle - 0.3 * span,
+                                      middle + 0.3 * span, 0.15 * span))},
                  {{0.5 * size, middle},
                   {0.5 * size, middle - 0.15 * span},
                   {0.5 * size, middle + 0.15 * span}}});

@@ -31,7 +31,11 @@ FreeQuantity freeQuantity(const Quantity& q, std::size_t index, double sd) {
     throw std::invalid_argument(
         fmt::format("{}: nominal value {} and lower bound {} of a logarithmic quantity must be > 0",
                     q.name, q.nominal, q.lower));
-  FreeQuantity free{index, q.nominal, sd, q.logarithmic, 0, 0};
+  if (!(q.nominalShare >= 0 && q.nominalShare < 1))
+    throw std::invalid_argument(
+        fmt::format("{}: prior probability of its nominal value is {}, must be at least 0 and < 1",
+                    q.name, q.nominalShare));
+  FreeQuantity free{index, q.nominal, sd, q.logarithmic, 0, 0, q.nominalShare};
   free.lowest = free.coordinate(q.lower);
   free.highest = free.coordinate(q.upper);
   return free;

@@ -18,10 +18,9 @@ namespace {
 
 using Follows = NonparametricForce::Follows;
 
-constexpr double kSize = 0.3;   // prior sd of each term, in units of the latent force's scale
-constexpr int kDegree = 5;      // of the polynomial in the position
-constexpr double kGrip = 0.05;  // speed scale of dry friction, as in the catalogues
-constexpr int kPoints = 61;     // points of the plotted curve
+constexpr double kSize = 0.3;  // prior sd of each term, in units of the latent force's scale
+constexpr int kDegree = 5;     // of the polynomial in the position
+constexpr int kPoints = 61;    // points of the plotted curve
 
 // The terms of a force, as functions of (q, q̇) and as text.
 struct Family {
@@ -49,18 +48,18 @@ Family elastic(const NodeStates& states, std::size_t axis) {
 }
 
 // viscous, quadratic and dry friction, each of size 1 at the typical speed
-Family damping(const NodeStates& states, std::size_t axis) {
+Family damping(const NodeStates& states, std::size_t axis, double smallSpeed) {
   const std::vector<VectorXd> speeds = states.speeds(axis);
   const double usual = rootMeanSquare(speeds);
   double highest = 0;
   for (const VectorXd& w : speeds) highest = std::max(highest, w.cwiseAbs().maxCoeff());
   Family family{axis, Follows::speed, -highest, highest, {}};
   if (!(usual > 0)) return family;
-  family.terms = {
-      {fmt::format("qdot/{:.17g}", usual), [=](double, double w) { return w / usual; }},
-      {fmt::format("qdot*abs(qdot)/{:.17g}", usual * usual),
-       [=](double, double w) { return w * std::abs(w) / (usual * usual); }},
-      {fmt::format("tanh(qdot/{})", kGrip), [](double, double w) { return std::tanh(w / kGrip); }}};
+  family.terms = {{fmt::format("qdot/{:.17g}", usual), [=](double, double w) { return w / usual; }},
+                  {fmt::format("qdot*abs(qdot)/{:.17g}", usual * usual),
+                   [=](double, double w) { return w * std::abs(w) / (usual * usual); }},
+                  {fmt::format("tanh(qdot/{})", smallSpeed),
+                   [=](double, double w) { return std::tanh(w / smallSpeed); }}};
   return family;
 }
 
@@ -135,7 +134,7 @@ std::optional<NonparametricForce> raceNonparametric(const Search& search, const 
   std::vector<Family> families;
   for (std::size_t axis = 0; axis < states.numAxes; ++axis) {
     families.push_back(elastic(states, axis));
-    families.push_back(damping(states, axis));
+    families.push_back(damping(states, axis, search.data().axes()[axis].smallSpeed));
   }
   std::optional<NonparametricForce> best;
   for (Family& family : families) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "discovery/judgement/node_states.h"
 #include "discovery/likelihood/latent_block.h"
@@ -28,11 +29,12 @@ struct Library {
 };
 
 struct StateTerm {
-  const char *name, *expression;
-  double (*at)(double q, double w);
+  std::string name, expression;
+  std::function<double(double q, double w)> at;
 };
-const std::vector<StateTerm>& stateTerms() {
-  static const std::vector<StateTerm> terms = {
+std::vector<StateTerm> stateTermsOf(const Axis& axis) {
+  const double s = axis.smallSpeed;
+  std::vector<StateTerm> terms = {
       {"1", "1", [](double, double) { return 1.0; }},
       {"q", "q", [](double q, double) { return q; }},
       {"q²", "q^2", [](double q, double) { return q * q; }},
@@ -40,11 +42,14 @@ const std::vector<StateTerm>& stateTerms() {
       {"q̇", "qdot", [](double, double w) { return w; }},
       {"q̇|q̇|", "qdot*abs(qdot)", [](double, double w) { return w * std::abs(w); }},
       {"q̇³", "qdot^3", [](double, double w) { return w * w * w; }},
-      {"tanh(q̇/0.05)", "tanh(qdot/0.05)", [](double, double w) { return std::tanh(w / 0.05); }},
+      {fmt::format("tanh(q̇/{})", s), fmt::format("tanh(qdot/{})", s),
+       [s](double, double w) { return std::tanh(w / s); }},
       {"q·q̇", "q*qdot", [](double q, double w) { return q * w; }},
-      {"sin q", "sin(q)", [](double q, double) { return std::sin(q); }},
-      {"cos q", "cos(q)", [](double q, double) { return std::cos(q); }},
   };
+  if (axis.isAngle()) {
+    terms.push_back({"sin q", "sin(q)", [](double q, double) { return std::sin(q); }});
+    terms.push_back({"cos q", "cos(q)", [](double q, double) { return std::cos(q); }});
+  }
   return terms;
 }
 
@@ -63,9 +68,10 @@ Library libraryOf(const Likelihood& likelihood, const Fit& fit, const NodeStates
                   std::size_t axis) {
   const DiscoveryProblem& data = likelihood.data();
   Library library;
-  for (const StateTerm& term : stateTerms()) {
-    library.names.emplace_back(term.name);
-    library.expressions.emplace_back(term.expression);
+  const std::vector<StateTerm> ofState = stateTermsOf(data.axes()[axis]);
+  for (const StateTerm& term : ofState) {
+    library.names.push_back(term.name);
+    library.expressions.push_back(term.expression);
   }
   const std::vector<std::string> inputs = data.inputNames();
   const auto numInputs = static_cast<Index>(inputs.size());
@@ -80,11 +86,11 @@ Library libraryOf(const Likelihood& likelihood, const Fit& fit, const NodeStates
     const MatrixXd scale =
         onAxis(data.predict(trial, fit.values, {}, {}, true).scale, axis, states.numAxes);
     haveMoments = haveMoments && scale.cols() == numInputs + static_cast<Index>(states.numAxes);
-    const auto own = static_cast<Index>(stateTerms().size());
+    const auto own = static_cast<Index>(ofState.size());
     MatrixXd columns(n, own + numInputs * (haveMoments ? 3 : 1));
     for (Index j = 0; j < own; ++j)
       for (Index i = 0; i < n; ++i)
-        columns(i, j) = stateTerms()[static_cast<std::size_t>(j)].at(q[t][i], qDot[t][i]);
+        columns(i, j) = ofState[static_cast<std::size_t>(j)].at(q[t][i], qDot[t][i]);
     columns.middleCols(own, numInputs) = onAxis(states.inputs[t], axis, states.numAxes);
     if (haveMoments) {
       columns.middleCols(own + numInputs, numInputs) = scale.leftCols(numInputs);

@@ -19,6 +19,19 @@ double Fit::sd(std::size_t free) const {
   return std::abs(hypothesis.free[free].slope(xi[i])) * std::sqrt(covariance(i, i));
 }
 
+namespace {
+
+// What a prior probability of the nominal value adds to the evidence: ln(1 − π + π·B) with the
+// ratio B of posterior and prior density at ξ = 0, which is the Bayes factor of ξ = 0 (Savage and
+// Dickey).
+double logNominalGain(double share, double xi, double sd) {
+  if (share == 0) return 0;
+  const double logFactor = -0.5 * xi * xi / (sd * sd) - std::log(sd);
+  return std::log(1 - share + share * std::exp(logFactor));
+}
+
+}  // namespace
+
 // Laplace's evidence, the posterior covariance, and the effective number of parameters of the
 // latent force.
 void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials, const VectorXd& tilt) const {
@@ -86,6 +99,7 @@ void Likelihood::finish(Fit& fit, const std::vector<Linear>& trials, const Vecto
     } else {
       const double sd = std::sqrt(fit.covariance(i, i));
       mass += logNormalWithin((q.lowest - fit.xi[i]) / sd, (q.highest - fit.xi[i]) / sd);
+      mass += logNominalGain(q.nominalShare, fit.xi[i], sd);
     }
   }
   for (const MatrixXd& c : carried)

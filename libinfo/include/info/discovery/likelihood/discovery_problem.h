@@ -22,6 +22,10 @@ struct Quantity {
   double sd = 1;             ///< prior standard deviation about nominal > 0; see `logarithmic`
   bool logarithmic = false;  ///< prior and deviation are those of log(value/nominal); nominal > 0
   int trial = -1;            ///< the trial whose initial state it belongs to; -1: all trials
+  /// Prior probability that it is exactly nominal, 0 to below 1; `sd` is that of the prior
+  /// otherwise. A shape parameter with a usual value, such as a spring's rest position, then costs
+  /// its effect next to no evidence where it has this value, however little is known of other ones.
+  double nominalShare = 0;
 };
 
 /// An effect that may be missing in the base model: one entry of a catalogue.
@@ -51,6 +55,12 @@ struct Axis {
   std::string name;
   std::string unit;       ///< of the coordinate
   std::string forceUnit;  ///< of the generalised force on it
+  /// s > 0 of formulas' tanh(q̇/s), a force that changes its sign with the speed: small beside usual
+  /// speeds [unit/s].
+  double smallSpeed = 0.05;
+
+  /// Whether its sine has a meaning.
+  bool isAngle() const { return unit.empty() || unit == "rad"; }
 };
 
 /// A node of the latent force.

@@ -15,6 +15,7 @@ struct FreeQuantity {
   double nominal = 0, sd = 1;
   bool logarithmic = false;
   double lowest = 0, highest = 0;  ///< bounds of ξ
+  double nominalShare = 0;         ///< prior probability of ξ = 0 exactly
 
   double value(double xi) const;
   double slope(double xi) const;  ///< dvalue/dξ
