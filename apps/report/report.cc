@@ -10,6 +10,7 @@
 #include "info/version.h"
 #include "output/json_text.h"
 #include "output/text.h"
+#include "report/series_stroke.h"
 #include "report/thinned_series.h"
 #include "report_assets.h"
 
@@ -156,9 +157,8 @@ void addFigureRows(Table& table, const std::string& name, const Json& value) {
 
 std::string provenance(const Summary& summary) {
   std::string text = html(Section{"Numbers of this result"});
-  Table figures{"", {"name (unit at its end)", "value"}, {}};
-  addFigureRows(figures, "", summary.figures());
-  for (auto& row : figures.rows) row.front().erase(0, 1);  // the dot before a top-level name
+  Table figures = summaryTable(summary);
+  figures.title.clear();
   text += html(figures);
 
   text += html(Section{"Provenance"});
@@ -189,17 +189,18 @@ nlohmann::ordered_json figureJson(const Figure& figure) {
                {"xLog", figure.xScale == AxisScale::logarithmic},
                {"yLog", figure.yScale == AxisScale::logarithmic},
                {"series", Json::array()}};
-  for (const Series& whole : figure.series) {
+  for (std::size_t i = 0; i < figure.series.size(); ++i) {
+    const Series& whole = figure.series[i];
     mustBeAsLong(figure, whole, whole.y, "y");
     if (!whole.bandLow.empty() || !whole.bandHigh.empty()) {
       mustBeAsLong(figure, whole, whole.bandLow, "bandLow");
       mustBeAsLong(figure, whole, whole.bandHigh, "bandHigh");
     }
     const Series series = thinned(whole);
-    Json one = {{"name", series.name},
-                {"style", styleName(series.style)},
-                {"x", plotNumbers(series.x)},
-                {"y", plotNumbers(series.y)}};
+    const SeriesStroke stroke = strokeOf(figure, i);
+    Json one = {{"name", series.name},        {"style", styleName(series.style)},
+                {"colour", stroke.colour},    {"dashes", stroke.dashes},
+                {"x", plotNumbers(series.x)}, {"y", plotNumbers(series.y)}};
     if (!series.bandLow.empty() || !series.bandHigh.empty()) {
       one["low"] = plotNumbers(series.bandLow);
       one["high"] = plotNumbers(series.bandHigh);
@@ -207,6 +208,13 @@ nlohmann::ordered_json figureJson(const Figure& figure) {
     json["series"].push_back(std::move(one));
   }
   return json;
+}
+
+Table summaryTable(const Summary& summary) {
+  Table table{"Numbers of this result", {"name (unit at its end)", "value"}, {}};
+  addFigureRows(table, "", summary.figures());
+  for (auto& row : table.rows) row.front().erase(0, 1);  // the dot before a top-level name
+  return table;
 }
 
 std::string renderReport(const Report& report, const Summary& summary) {

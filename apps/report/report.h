@@ -47,7 +47,7 @@ struct Figure {
   AxisScale yScale = AxisScale::linear;
 };
 
-/// The data of a figure for the plotting script: title, labels, scales and series with at most six
+/// The data of a figure for the page's script: title, labels, scales and series with at most six
 /// digits, NaN as null. Very long series are reduced to their highest and lowest values
 /// (thinned_series.h), and the report says so.
 /// @throws std::invalid_argument if a series' x and y differ in length
@@ -92,6 +92,9 @@ struct Report {
   std::optional<Figure> mainFigure = {};
   std::vector<ReportPart> details = {};
 };
+
+/// The numbers and texts of a summary, by their names.
+Table summaryTable(const Summary& summary);
 
 /// @throws std::invalid_argument if a series' x and y, or a table's columns and row, differ in
 ///   length, or a picture is not a PNG, or a drawing not an SVG
