@@ -5,6 +5,7 @@
 #include "bio/discovery/with_experimental_conditions.h"
 #include "bio/opensim/osim_file.h"
 #include "command/command.h"
+#include "options/model_methods.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
@@ -59,6 +60,7 @@ class Replay : public Command {
                                                         simulation_.coordinates, trial);
     }
     const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
+    sayExcitations(system, summary.methods());
     bio::TrialReplay replay;
     {
       ProgressBar bar("replay");

@@ -33,7 +33,11 @@ class FileNames {
         name += '_';
       }
     }
-    name.resize(std::min<std::size_t>(name.size(), 100));  // of the 255 that a file system takes
+    constexpr std::size_t longest = 60;
+    if (name.size() > longest) {
+      const std::size_t word = name.rfind('_', longest);
+      name.resize(word == name.npos || word == 0 ? longest : word);
+    }
     while (name.ends_with('_')) name.pop_back();
     if (name.empty()) name = without;
     std::string unique = name;
@@ -42,7 +46,7 @@ class FileNames {
   }
 
  private:
-  std::set<std::string> used_ = {"figures"};
+  std::set<std::string> used_ = {"figures", "methods"};
 };
 
 /// @param format  "pdf" or "png"
@@ -88,6 +92,21 @@ class FigureWriter {
         "\\begin{{table}}[p]\n  \\centering\n  \\caption{{{}}}\n  \\label{{tab:{}}}\n  "
         "\\input{{{}.tex}}\n\\end{{table}}\n\n",
         latexText(title), name, name);
+  }
+
+  /// methods.tex, a section of a paper.
+  void addMethods(const Methods& methods) {
+    if (methods.isEmpty()) return;
+    std::string text = latexText(methods.paragraph()) + "\n";
+    const auto list = [&](const char* head, const std::vector<std::string>& items) {
+      if (items.empty()) return;
+      text += fmt::format("\n{}\n\\begin{{itemize}}\n", head);
+      for (const std::string& item : items) text += "  \\item " + latexText(item) + "\n";
+      text += "\\end{itemize}\n";
+    };
+    list("Assumptions:", methods.assumptions());
+    list("References:", methods.references());
+    write("methods.tex", text);
   }
 
   void writeContents(const std::string& title) {
@@ -152,6 +171,7 @@ void writeFigureFiles(const Report& report, const Summary& summary, OutputFolder
     std::visit([&](const auto& item) { writer.add(item); }, part);
   }
   writer.add(summaryTable(summary));
+  writer.addMethods(summary.methods());
   writer.writeContents(report.title);
 }
 

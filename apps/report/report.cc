@@ -61,7 +61,10 @@ std::string scriptText(const Json& json) {
 }
 
 std::string html(const Section& section) {
-  return fmt::format("<h2>{}</h2>\n", htmlText(section.title));
+  std::string text = fmt::format("<h2>{}</h2>\n", htmlText(section.title));
+  if (!section.context.empty())
+    text += fmt::format("<p class=\"context\">{}</p>\n", htmlText(section.context));
+  return text;
 }
 
 std::string html(const Paragraph& paragraph) {
@@ -155,6 +158,21 @@ void addFigureRows(Table& table, const std::string& name, const Json& value) {
   }
 }
 
+std::string methods(const Methods& methods) {
+  if (methods.isEmpty()) return "";
+  std::string text = html(Section{"Methods", "May be quoted; it says only what was used here."});
+  text += html(Paragraph{methods.paragraph()});
+  const auto list = [&](const char* title, const std::vector<std::string>& items) {
+    if (items.empty()) return;
+    text += fmt::format("<h3>{}</h3>\n<ul>\n", title);
+    for (const std::string& item : items) text += fmt::format("<li>{}</li>\n", htmlText(item));
+    text += "</ul>\n";
+  };
+  list("Assumptions", methods.assumptions());
+  list("References", methods.references());
+  return text;
+}
+
 std::string provenance(const Summary& summary) {
   std::string text = html(Section{"Numbers of this result"});
   Table figures = summaryTable(summary);
@@ -235,6 +253,7 @@ std::string renderReport(const Report& report, const Summary& summary) {
   for (const auto& part : report.details) {
     text += std::visit([](const auto& item) { return html(item); }, part);
   }
+  text += methods(summary.methods());
   text += provenance(summary);
   text += "</main>\n";
   text += fmt::format("<script>{}\n{}</script>\n", assets::uplotJs, assets::reportJs);

@@ -77,14 +77,17 @@ struct Paragraph {
   std::string text = {};
 };
 
+/// The parts that follow belong to it, up to the next one.
 struct Section {
   std::string title = {};
+  std::string context =
+      {};  ///< what it shows, and how to read it; one or two sentences; may be empty
 };
 
 using ReportPart = std::variant<Section, Paragraph, Figure, Table, Picture, VectorDrawing>;
 
-/// A report: title, verdict and main picture or figure, then the details in their order, then the
-/// provenance, which is taken from the summary.
+/// A report: title, verdict and main picture or figure, then the details in their order, then
+/// methods, numbers and provenance, which are taken from the summary.
 struct Report {
   std::string title = {};    ///< what was run: "Replay of trial_a.sto on elbow8.osim"
   std::string verdict = {};  ///< the answer in one sentence

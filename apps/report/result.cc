@@ -34,6 +34,7 @@ void deliver(const CommandContext& context, const Summary& summary, const Report
     folder.write("reproduce.sh", [&](std::ostream& out) { out << script; });
     folder.makeExecutable("reproduce.sh");
   }
+  json["sentence"] = report.verdict;
   json["files"] = folder.files();
   json["files_sha256"] = nlohmann::ordered_json::object();
   for (const std::string& name : folder.files()) json["files_sha256"][name] = folder.hashOf(name);
