@@ -1,7 +1,6 @@
-#include "discover/discover_methods.h"
-
 #include <fmt/format.h>
 
+#include "discover/discover_verdict.h"
 #include "output/text.h"
 
 namespace app {

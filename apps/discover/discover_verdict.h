@@ -82,6 +82,9 @@ struct DiscoverFindings {
 std::string followedBy(const DiscoverFindings& findings,
                        const info::discover::NonparametricForce& force);
 
+/// How the verdict was reached.
+void sayDiscovery(const DiscoverFindings& findings, Methods& methods);
+
 /// Sets the values of summary.json.
 void tellFindings(const DiscoverFindings& findings, Summary& summary);
 

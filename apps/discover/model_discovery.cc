@@ -8,7 +8,6 @@
 
 #include "bio/discovery/workflow.h"
 #include "bio/model/units.h"
-#include "discover/discover_methods.h"
 #include "discover/discover_results.h"
 #include "discover/discover_search.h"
 #include "discover/proposed_experiments_text.h"

@@ -15,7 +15,7 @@ namespace app {
 std::optional<Figure> excitationFigure(const bio::Trial& trial,
                                        const bio::MusculoskeletalSystem* system = nullptr);
 
-/// The same of a trial that was fitted and, unless null, one that was held out, titled by their
+/// Such figures of a trial that was fitted and, unless null, one that was held out, titled by their
 /// files.
 std::vector<Figure> excitationFigures(const bio::Trial& fitted, const bio::Trial* heldOut,
                                       const bio::MusculoskeletalSystem& system);

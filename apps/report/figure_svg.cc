@@ -81,7 +81,7 @@ class FigureDrawing {
                  onlyPoints || figure.xScale == AxisScale::logarithmic ? 0.03 : 0);
     y_ = rangeOf(ys, figure.yScale, 0.05);
     xTicks_ = ticksOf(x_, figure.xScale, 8);
-    yTicks_ = ticksOf(y_, figure.yScale, 6);
+    yTicks_ = ticksOf(y_, figure.yScale, 7);
     double widest = 0;
     for (const AxisTick& tick : yTicks_)
       widest = std::max(widest, letterSize * textWidth(tick.label));

@@ -39,7 +39,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 11> escapes 
     {"\"", "''"},
 }};
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 60> signs = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 66> signs = {{
     {"−", "$-$"},
     {"±", "$\\pm$"},
     {"×", "$\\times$"},
@@ -67,6 +67,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 60> signs = 
     {"⁴", "$^{4}$"},
     {"⁵", "$^{5}$"},
     {"⁶", "$^{6}$"},
+    {"⁷", "$^{7}$"},
+    {"⁸", "$^{8}$"},
+    {"⁹", "$^{9}$"},
+    {"χ", "$\\chi$"},
+    {"κ", "$\\kappa$"},
+    {"∫", "$\\int$"},
     {"⁻", "$^{-}$"},
     {"₀", "$_{0}$"},
     {"₁", "$_{1}$"},
@@ -166,7 +172,13 @@ std::string latexText(std::string_view text) {
     rest.remove_prefix(character.size());
     const std::string_view* command = commandFor(escapes, character);
     if (command == nullptr) command = commandFor(signs, character);
-    if (command != nullptr) {
+    constexpr std::string_view dotAbove = "\u0307";
+    if (rest.starts_with(dotAbove)) {
+      latex += fmt::format("$\\dot{{{}}}$", character);
+      rest.remove_prefix(dotAbove.size());
+    } else if (character == "-" && latex.ends_with('-')) {
+      latex += "{}-";  // two hyphens are no dash
+    } else if (command != nullptr) {
       latex += *command;
     } else {
       latex += character == "\n" || character == "\r" || character == "\t" ? " " : character;

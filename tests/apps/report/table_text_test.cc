@@ -32,6 +32,7 @@ TEST(TableText, LatexTakesNothingForACommand) {
   EXPECT_EQ(latexText("\\input{/etc/passwd} $x_1^2$ & # ~ %"),
             "\\textbackslash{}input\\{/etc/passwd\\} \\$x\\_1\\textasciicircum{}2\\$ \\& \\# "
             "\\textasciitilde{} \\%");
+  EXPECT_EQ(latexText("--out q\u0307"), "-{}-out $\\dot{q}$");
   EXPECT_EQ(latexText("m⁻² ± 3 µm, θ ≤ 5°\n"),
             "m$^{-2}$ $\\pm$ 3 $\\mu$m, $\\theta$ $\\leq$ 5$^{\\circ}$ ");
 }
