@@ -62,7 +62,7 @@ awk '
 function value(text) { sub(/^ *("[^"]*": )?/, "", text); sub(/,$/, "", text); return text }
 function size(x) { return x < 0 ? -x : x }
 FNR == 1 { file++; n = 0; skip = 0 }
-/^  "/ { skip = $1 ~ /^"(version|command_line|inputs|files|files_sha256|computed|ranks|cycle_ms)":$/ }
+/^  "/ { skip = $1 ~ /^"(version|command_line|inputs|files|files_sha256|sentence|computed|ranks|cycle_ms)":$/ }
 skip || /"[^"]*(wall|_ms|ms_per|cost_ratio|deadline|wake_up)[^"]*":/ { next }
 { n++ }
 file == 1 { line[n] = $0; lines = n; next }
