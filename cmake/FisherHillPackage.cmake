@@ -31,7 +31,7 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME fisherhill)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "xvfb, libgl1-mesa-dri, fonts-dejavu-core")
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "ffmpeg, libfisherhill-dev")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "ffmpeg, librsvg2-bin, libfisherhill-dev")
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
 "FisherHill reads a musculoskeletal model (OpenSim's .osim) and recorded muscle
 excitations, predicts how the limb moves, says what the measured motion tells

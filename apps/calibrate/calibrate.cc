@@ -8,12 +8,14 @@
 #include "bio/model/units.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/review/trial_review.h"
+#include "calibrate/calibrate_methods.h"
 #include "calibrate/calibrate_remarks.h"
 #include "calibrate/calibrate_report.h"
 #include "calibrate/fitted_table.h"
 #include "command/command.h"
 #include "info/version.h"
 #include "options/input_rules.h"
+#include "options/model_methods.h"
 #include "options/named_pairs.h"
 #include "options/number_rules.h"
 #include "options/parameter_list.h"
@@ -170,6 +172,9 @@ class Calibrate : public Command {
         found.options, calibration,     calibrated ? &*calibrated : nullptr};
     tellCalibrate(findings, summary);
     tellSteps(typed.trials.simulation.step, found, summary);
+    sayModel(model, found.training->system(), summary.methods());
+    sayExcitations(found.training->system(), summary.methods());
+    sayCalibration(findings, summary.methods());
     if (calibrated) {
       writeTrials(*calibrated, summary, folder);
       writeModel(findings, calibrated->model, summary, folder);

@@ -10,6 +10,7 @@
 #include "calibrate/calibrate_tables.h"
 #include "calibrate/held_out_prediction.h"
 #include "calibrate/latent_excitations.h"
+#include "options/excitation_figure.h"
 #include "output/text.h"
 #include "report/interval_drawing.h"
 
@@ -333,8 +334,22 @@ Report calibrateReport(const CalibrateFindings& f) {
   report.title = fmt::format("Calibration of {} on {}", f.modelFile, fmt::join(files, ", "));
   report.verdict = verdictOf(f);
   if (!c.failure.empty()) return report;
-  report.mainFigure = overlay(f.training, 0, c.before, c.after, "calibration");
-  report.details.push_back(Section{"Estimates"});
+  // what was not fitted is the better judge, so it comes first
+  report.mainFigure = f.heldOut
+                          ? overlay(*f.heldOut, 0, c.heldOutBefore, c.heldOutAfter, "held out")
+                          : overlay(f.training, 0, c.before, c.after, "calibration");
+  if (f.heldOut) {
+    report.details.push_back(
+        Section{"Held-out trials",
+                "Trials that were not fitted: how well the calibrated model predicts them."});
+    report.details.push_back(predictionTable(f));
+    for (std::size_t i = 1; i < f.heldOut->series().size(); ++i) {
+      report.details.push_back(overlay(*f.heldOut, i, c.heldOutBefore, c.heldOutAfter, "held out"));
+    }
+  }
+  report.details.push_back(
+      Section{"Estimates",
+              "What the calibration trials say of each parameter, beside what was known before."});
   report.details.push_back(estimateTable(f));
   for (const bio::CalibratedParameter& parameter : c.parameters) {
     if (!parameter.why.empty() && !bio::isKnot(parameter.target))
@@ -346,20 +361,21 @@ Report calibrateReport(const CalibrateFindings& f) {
   for (const bio::CalibratedParameter& parameter : c.parameters) {
     if (parameter.profile) report.details.push_back(profileFigure(parameter));
   }
-  if (f.heldOut) {
-    report.details.push_back(Section{"Held-out trials"});
-    report.details.push_back(predictionTable(f));
-    for (std::size_t i = 0; i < f.heldOut->series().size(); ++i) {
-      report.details.push_back(overlay(*f.heldOut, i, c.heldOutBefore, c.heldOutAfter, "held out"));
-    }
-  }
-  if (f.training.series().size() > 1) {
-    report.details.push_back(Section{"Other calibration trials"});
-    for (std::size_t i = 1; i < f.training.series().size(); ++i) {
+  const std::size_t shown = f.heldOut ? 0 : 1;
+  if (f.training.series().size() > shown) {
+    report.details.push_back(
+        Section{f.heldOut ? "Calibration trials" : "Other calibration trials",
+                "Trials that were fitted, simulated before and after calibration."});
+    for (std::size_t i = shown; i < f.training.series().size(); ++i) {
       report.details.push_back(overlay(f.training, i, c.before, c.after, "calibration"));
     }
   }
-  report.details.push_back(Section{"Residuals"});
+  addExcitations(
+      excitationFigures(f.training.trials().front(),
+                        f.heldOut ? &f.heldOut->trials().front() : nullptr, f.training.system()),
+      report);
+  report.details.push_back(Section{
+      "Residuals", "What the calibrated model leaves unexplained, and what was taken as noise."});
   report.details.push_back(Paragraph{noiseText(f)});
   for (std::size_t i = 0; i < f.training.channels().size(); ++i) {
     report.details.push_back(residualFigure(f, i));

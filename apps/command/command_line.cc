@@ -7,6 +7,7 @@
 
 #include "command/common_options.h"
 #include "info/version.h"
+#include "report/figure_files.h"
 
 namespace app {
 
@@ -32,11 +33,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Every file that an option but --out names.
+/// Every file that an option names, but for folders of results.
 std::vector<fs::path> inputsNamed(const CLI::App& subcommand) {
   std::vector<fs::path> inputs;
   for (const CLI::Option* option : subcommand.get_options()) {
-    if (option->check_lname("out")) continue;
+    if (option->check_lname("out") || option->check_lname("figures")) continue;
     for (const std::string& word : option->results()) {
       std::error_code failed;
       const fs::file_status status = fs::status(word, failed);
@@ -62,6 +63,7 @@ CommandLine::Chosen CommandLine::parse(const std::vector<std::string>& arguments
   for (std::size_t i = 0; i < commands_.size(); ++i) {
     if (!subcommands_[i]->parsed()) continue;
     contexts_[i].inputs = inputsNamed(*subcommands_[i]);
+    if (contexts_[i].figures) requireSvgConverter("--figures");
     return {commands_[i].get(), &contexts_[i]};
   }
   throw CLI::RequiredError("a subcommand");

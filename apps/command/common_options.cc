@@ -13,6 +13,11 @@ void addCommonOptions(CLI::App& subcommand, CommandContext& context) {
   subcommand.add_option("--out", context.out, "folder for the results; created if missing")
       ->type_name("DIR")
       ->group(group);
+  subcommand
+      .add_option("--figures", context.figures,
+                  "folder for the report's figures as SVG and PDF and its tables as CSV and LaTeX")
+      ->type_name("DIR")
+      ->group(group);
   subcommand.add_flag("--force", context.force, "overwrite an existing result")->group(group);
   subcommand.add_flag("--json", context.json, "print only the summary, as JSON")->group(group);
   subcommand.add_option("--seed", context.seed, "seed of the random numbers, ≥ 0")

@@ -6,7 +6,7 @@
 
 namespace app {
 
-/// Adds --out, --force, --json, --seed and --threads to a subcommand.
+/// Adds --out, --figures, --force, --json, --seed and --threads to a subcommand.
 void addCommonOptions(CLI::App& subcommand, CommandContext& context);
 
 }  // namespace app

@@ -13,7 +13,7 @@
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
 #include "output/text.h"
-#include "render/figure_pictures.h"
+#include "report/figure_files.h"
 #include "report/result.h"
 
 namespace app {
@@ -70,6 +70,7 @@ class Compare : public Command {
   }
 
   ExitStatus run(const CommandContext& context) override {
+    if (png_) requireSvgConverter("--png");
     if (!classes_.empty()) return runMuscles(context);
     bio::CompareOptions options = compareOptions();
     OutputFolder folder(context, {"compare.csv"});
@@ -122,7 +123,7 @@ class Compare : public Command {
     summary.set("start_from", bio::name(input.from));
     tellCompare(findings, summary);
     const Report report = compareReport(findings);
-    writePictures(report, folder);
+    if (png_) writeFigurePngs(report, folder);
     deliver(context, summary, report, folder);
     return comparison.reference.confirmed() ? ExitStatus::done : ExitStatus::answerIsNo;
   }
@@ -170,19 +171,12 @@ class Compare : public Command {
     summary.set("start_from", bio::name(input.from));
     tellMuscles(findings, summary);
     const Report report = musclesReport(findings);
-    writePictures(report, folder);
+    if (png_) writeFigurePngs(report, folder);
     deliver(context, summary, report, folder);
     const bool isFine = std::all_of(classes.begin(), classes.end(), [](const auto& muscles) {
       return muscles.motion.outcome == bio::Outcome::completed;
     });
     return isFine ? ExitStatus::done : ExitStatus::answerIsNo;
-  }
-
-  void writePictures(const Report& report, OutputFolder& folder) const {
-    if (!png_ || !folder.active()) return;
-    for (const FigurePicture& picture : figurePictures(report)) {
-      folder.write(picture.file, [&](std::ostream& out) { out << picture.png; });
-    }
   }
 
   /// The typed lists; --step joins the steps.

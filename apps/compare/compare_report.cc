@@ -9,6 +9,7 @@
 #include "bio/model/units.h"
 #include "bio/simulation/integrator_names.h"
 #include "compare/compare_figures.h"
+#include "options/excitation_figure.h"
 #include "output/text.h"
 
 namespace app {
@@ -213,7 +214,8 @@ Report compareReport(const CompareFindings& f) {
         Paragraph{"A muscle path of this model gains or loses points at certain angles, where its "
                   "length jumps. Every integrator ends a step at such an angle."});
   }
-  report.details.push_back(Section{"Largest stable steps"});
+  report.details.push_back(
+      Section{"Largest stable steps", "How long a step each integrator takes before it fails."});
   report.details.push_back(limitTable(f));
   report.details.push_back(Paragraph{fmt::format(
       "A step is stable if the run reaches the end with an RMS error below {:.2g} deg "
@@ -223,7 +225,7 @@ Report compareReport(const CompareFindings& f) {
   if (Table failures = failureTable(f); !failures.rows.empty()) {
     report.details.push_back(std::move(failures));
   }
-  report.details.push_back(Section{"Motions"});
+  report.details.push_back(Section{"Motions", "Simulated motions beside the converged reference."});
   if (!cellsOf(f, bio::Integrator::rungeKutta4).empty()) {
     report.details.push_back(rungeKuttaFigure(f));
   }
@@ -232,7 +234,9 @@ Report compareReport(const CompareFindings& f) {
   }
   addMeasured(f, report);
   addAlso(f, report);
-  report.details.push_back(Section{"Runs"});
+  if (auto excitations = excitationFigure(f.trial, &f.system))
+    report.details.push_back(*std::move(excitations));
+  report.details.push_back(Section{"Runs", "Every combination of integrator and step."});
   report.details.push_back(cellTable(f));
   report.details.push_back(Paragraph{fmt::format(
       "Times are medians of {} runs. The energy error is the largest difference between kinetic "

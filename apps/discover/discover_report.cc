@@ -11,6 +11,7 @@
 #include "discover/excess_error_text.h"
 #include "discover/written_discovery.h"
 #include "info/discovery/judgement/separation.h"
+#include "options/excitation_figure.h"
 #include "output/text.h"
 #include "report/interval_drawing.h"
 
@@ -51,27 +52,31 @@ class Writer {
           hasMain = true;
           report_.mainFigure = std::move(figure);
         } else {
-          others_.push_back(std::move(figure));
+          (isHeldOut(t) ? heldOut_ : others_).push_back(std::move(figure));
         }
       }
     }
+    heldOut();
     effects();
     if (!f_.verdict.finalists.empty()) evidence();
     for (ReportPart& part : whereTheyDisagree(f_)) report_.details.push_back(std::move(part));
     // stopped before there was a base model?
     if (f_.verdict.base.size() > 0) {
-      section("How well it fits");
-      if (!std::isnan(f_.verdict.excess.floor)) report_.details.emplace_back(excessErrorTable(f_));
+      section("How well it fits",
+              "Errors of the model before and after, and tests of what is left.");
+      if (!std::isnan(f_.verdict.excess.floor) && !isTold_)
+        report_.details.emplace_back(excessErrorTable(f_));
       if (f_.wording.isInNoise()) report_.details.emplace_back(outputErrorTable(f_));
       report_.details.emplace_back(adequacyTable(f_));
       for (ReportPart& part : withoutName(f_)) report_.details.push_back(std::move(part));
       parameters();
     }
     detectability();
-    section("Next experiment");
+    section("Next experiment", "What would tell apart what these data leave open.");
     say(f_.nextExperiment);
     if (!f_.predictedExperiments.empty()) report_.details.emplace_back(predictedExperimentTable());
     reproduce();
+    addExcitations(f_.excitations, report_);
     if (!others_.empty()) {
       section(f_.wording.isInNoise() ? "Other outputs and trials" : "Other trials");
       for (Figure& figure : others_) report_.details.emplace_back(std::move(figure));
@@ -83,13 +88,31 @@ class Writer {
   const info::discover::Candidate& candidate(std::size_t c) const {
     return f_.data.candidates()[c];
   }
-  void section(const std::string& title) { report_.details.emplace_back(Section{title}); }
+  bool isHeldOut(int trial) const {
+    const std::vector<int>& list = f_.options.heldOut;
+    return std::find(list.begin(), list.end(), trial) != list.end();
+  }
+  void section(const std::string& title, const std::string& context = "") {
+    report_.details.emplace_back(Section{title, context});
+  }
   void say(const std::string& text) { report_.details.emplace_back(Paragraph{text}); }
+
+  /// Trials that were not fitted are the better judges, so they come first.
+  void heldOut() {
+    if (f_.options.heldOut.empty() || f_.verdict.base.size() == 0) return;
+    isTold_ = !std::isnan(f_.verdict.excess.floor);
+    if (!isTold_ && heldOut_.empty()) return;
+    section("Held-out trials",
+            "Trials that were not fitted: how well the model predicts them before and after.");
+    if (isTold_) report_.details.emplace_back(excessErrorTable(f_));
+    for (Figure& figure : heldOut_) report_.details.emplace_back(std::move(figure));
+  }
 
   void effects() {
     const auto& verdict = f_.verdict;
     if (verdict.effects.empty()) return;
-    section(verdict.surrogate ? "Closest match in the catalogue" : "Missing effects");
+    section(verdict.surrogate ? "Closest match in the catalogue" : "Missing effects",
+            "The forces or errors that the model lacks, with their sizes and how sure they are.");
     Table table{"",
                 {"effect", "parameter", "unit", "estimate", "± sd", "log Bayes factor [nats]",
                  "probability"},
@@ -183,7 +206,8 @@ class Writer {
   /// Each trial's figures, and the commands that make them.
   void reproduce() {
     if (!f_.written || f_.written->trials.empty()) return;
-    section("Reproduce");
+    section("Reproduce",
+            "The written model simulated by other commands, and the errors that they report.");
     const std::string& unit = f_.wording.errorUnit;
     const auto figure = [&](double value) { return numberText(f_.wording.unit * value); };
     Table errors{"RMS error (measured − simulated), as replay reports it",
@@ -224,7 +248,8 @@ class Writer {
 
   /// All that were raced, as bars.
   void evidence() {
-    section("Evidence");
+    section("Evidence",
+            "How much better each hypothesis explains the data than the base model does.");
     std::vector<IntervalRow> rows;
     std::vector<std::vector<std::string>> cells;
     for (const auto& finalist : f_.verdict.finalists) {
@@ -264,7 +289,7 @@ class Writer {
   void parameters() {
     const auto& list = f_.verdict.nuisancesAfter;
     if (list.empty()) return;
-    section("Parameters");
+    section("Parameters", "Values of the model that were fitted together with the effects.");
     std::vector<IntervalRow> rows;
     for (const Estimate& estimate : list) {
       const auto& quantity = f_.data.quantities()[estimate.quantity];
@@ -286,7 +311,8 @@ class Writer {
 
   void detectability() {
     if (f_.verdict.detectability.empty()) return;
-    section("Smallest detectable effects");
+    section("Smallest detectable effects",
+            "What these trials could have shown, had it been there.");
     Table table{"", {"effect", "kind", "detectable from", "unit"}, {}};
     for (const auto& one : f_.verdict.detectability) {
       const auto& c = candidate(one.candidate);
@@ -303,7 +329,8 @@ class Writer {
 
   const DiscoverFindings& f_;
   Report report_;
-  std::vector<Figure> others_;
+  std::vector<Figure> heldOut_, others_;  ///< motions but the first
+  bool isTold_ = false;                   ///< the table of excess errors
 };
 
 }  // namespace

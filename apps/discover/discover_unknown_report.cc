@@ -76,7 +76,9 @@ std::vector<ReportPart> withoutName(const DiscoverFindings& f) {
   if (!f.verdict.unknown) return {};
   const info::discover::Unknown& u = *f.verdict.unknown;
   std::vector<ReportPart> parts;
-  parts.emplace_back(Section{"Effect outside the catalogue"});
+  parts.emplace_back(
+      Section{"Effect outside the catalogue",
+              "A force that no effect of the catalogue describes, as the data show it."});
   parts.emplace_back(Paragraph{fmt::format(
       "The missing force{} has an RMS of {} {}; {} % of its power lies within 0.5 Hz of {} Hz.",
       f.wording.axes.size() > 1 ? " on " + f.wording.axes.at(u.axis).name : "",

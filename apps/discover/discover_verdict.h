@@ -9,6 +9,7 @@
 #include "info/discovery/discover.h"
 #include "info/discovery/likelihood/fitted_numbers.h"
 #include "output/summary.h"
+#include "report/report.h"
 
 namespace app {
 
@@ -74,11 +75,15 @@ struct DiscoverFindings {
   const std::vector<info::discover::FittedNumber>& fitted;
   const WrittenDiscovery* written = nullptr;  ///< for musculoskeletal models
   double step = 0;                            ///< time step of the final search [s]
+  std::vector<Figure> excitations = {};       ///< of the first trial fitted and the first held out
 };
 
 /// Variable that a non-parametric force follows: "angle", or "position" of what slides, or "speed".
 std::string followedBy(const DiscoverFindings& findings,
                        const info::discover::NonparametricForce& force);
+
+/// How the verdict was reached.
+void sayDiscovery(const DiscoverFindings& findings, Methods& methods);
 
 /// Sets the values of summary.json.
 void tellFindings(const DiscoverFindings& findings, Summary& summary);

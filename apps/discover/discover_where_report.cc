@@ -54,6 +54,9 @@ std::string scoreMap(const DiscoverFindings& f, std::size_t axis) {
     lowV = std::min(lowV, score.lowerQDot);
     highV = std::max(highV, score.upperQDot);
   }
+  // the strongest colour for the largest score, but for noise alone none
+  double largest = 6;
+  for (const Score& score : scores) largest = std::max(largest, std::abs(score.z));
   const ShownAxis& shown = f.wording.axes.at(axis);
   const double scale = shown.scale;
   constexpr double left = 110, right = 900, top = 10, bottom = 300;
@@ -63,7 +66,7 @@ std::string scoreMap(const DiscoverFindings& f, std::size_t axis) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 920 360\" width=\"100%\" "
       "font-family=\"sans-serif\" font-size=\"14\">\n";
   for (const Score& score : scores) {
-    const double strength = std::min(1.0, std::abs(score.z) / 6);
+    const double strength = std::abs(score.z) / largest;
     svg += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\" "
         "fill-opacity=\"{:.2f}\" stroke=\"{}\" stroke-width=\"{}\"/>"
@@ -120,7 +123,9 @@ std::vector<ReportPart> whereTheyDisagree(const DiscoverFindings& f) {
   const auto& map = f.verdict.localisation;
   if (map.times.empty()) return {};
   std::vector<ReportPart> parts;
-  parts.emplace_back(Section{"Where model and data disagree"});
+  parts.emplace_back(
+      Section{"Where model and data disagree",
+              "When, and in which positions and speeds, the model as it is lacks a force."});
   const std::size_t axes = f.wording.axes.size();
   for (std::size_t axis = 0; axis < axes; ++axis) parts.emplace_back(scoreOverTime(f, axis));
   if (f.wording.hasMap) {
@@ -130,7 +135,8 @@ std::vector<ReportPart> whereTheyDisagree(const DiscoverFindings& f) {
           fmt::format("Score over {} and speed{}", shown.position, f.wording.named(axis)),
           scoreMap(f, axis),
           fmt::format("Orange: the data ask for an additional force that raises {}; "
-                      "blue: one that lowers it; framed: significant. {}",
+                      "blue: one that lowers it; the stronger, the larger the score; "
+                      "framed: significant. {}",
                       shown.name, map.cells.empty() ? "" : "White: not visited.")});
     }
   } else {

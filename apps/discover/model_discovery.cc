@@ -14,7 +14,9 @@
 #include "discover/suggested_experiments.h"
 #include "discover/written_discovery.h"
 #include "info/version.h"
+#include "options/excitation_figure.h"
 #include "options/input_rules.h"
+#include "options/model_methods.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "report/result.h"
@@ -199,21 +201,28 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
   if (next.empty()) {
     next = followUp(data, verdict, followUpsOfModels(data.encompassing()));
   }
-  const DiscoverFindings findings{request.model,
-                                  files,
-                                  data,
-                                  wording,
-                                  found.options,
-                                  verdict,
-                                  next,
-                                  result.experiments,
-                                  found.wallSeconds,
-                                  found.processorSeconds,
-                                  result.fitted,
-                                  &written,
-                                  found.step};
+  const DiscoverFindings findings{
+      request.model,
+      files,
+      data,
+      wording,
+      found.options,
+      verdict,
+      next,
+      result.experiments,
+      found.wallSeconds,
+      found.processorSeconds,
+      result.fitted,
+      &written,
+      found.step,
+      excitationFigures(trials.front(),
+                        request.heldOut.empty() ? nullptr : &trials[request.trials.size()],
+                        compiled)};
   summary.setSimulation(request.simulation.integrator, found.step, longestDuration(trials),
                         found.wallSeconds);
+  sayModel(model, compiled, summary.methods());
+  sayExcitations(compiled, summary.methods());
+  sayDiscovery(findings, summary.methods());
   const nlohmann::ordered_json json = writeFindings(findings, summary, folder);
   return {deliverFindings(findings, watch, context, summary, folder), json};
 }

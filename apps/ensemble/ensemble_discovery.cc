@@ -143,6 +143,7 @@ ExitStatus discoverInSets(ModelDiscoveryRequest each, const fs::path& folder,
     request.heldOut = set.heldOut;
     CommandContext one = context;
     one.quiet = true;
+    one.figures.reset();
     one.force = true;  // what a killed run has left there is made anew
     one.out = *context.out / "verdicts" / set.name;
     return std::vector{verdictRow(set, discoverInModel(request, one).verdict)};

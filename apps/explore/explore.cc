@@ -121,6 +121,9 @@ class Explore : public Command {
     if (!context.out) {
       throw std::invalid_argument("--out is required: the page is written into this folder");
     }
+    if (context.figures) {
+      throw std::invalid_argument("--figures: the page saves its curves and the view itself");
+    }
     if (!(noise_ > 0 && std::isfinite(noise_))) {
       throw std::invalid_argument(fmt::format("--noise: {} deg, must be > 0", noise_));
     }

@@ -14,6 +14,7 @@
 #include "bio/review/trial_review.h"
 #include "bio/skeleton/articulated_tree.h"
 #include "bio/skeleton/free_coordinates.h"
+#include "options/model_methods.h"
 #include "options/system_options.h"
 #include "output/sha256.h"
 #include "output/text.h"
@@ -221,6 +222,7 @@ bio::MusculoskeletalSystem movableSystem(const bio::Model& model, const std::str
     throw std::invalid_argument(
         fmt::format("{}: no muscle moves {}", file, fmt::join(options.coordinates, ", ")));
   }
+  sayModel(model, system, summary.methods());
   return system;
 }
 
@@ -274,6 +276,7 @@ TrialInput readTrialInput(const std::string& file, const bio::Model& model,
   TrialInput input;
   input.trial = readTrialFile(file, model, options, use);
   for (const std::string& warning : input.trial.warnings) summary.warn(warning);
+  sayExcitations(system, summary.methods());
   input.recorded =
       bio::recordedTrial(input.trial, system,
                          simulationOptions(options, input.trial.times[0], input.trial.duration()));

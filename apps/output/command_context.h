@@ -22,11 +22,12 @@ struct CommandContext {
   std::vector<std::string> commandLine;       ///< as typed, program name first
   std::vector<std::filesystem::path> inputs;  ///< files named by options; never overwritten
   std::optional<std::filesystem::path> out;   ///< folder for results; without it nothing is written
-  bool force = false;                         ///< overwrite an existing result
-  bool json = false;                          ///< print only the summary on standard output
-  std::uint64_t seed = 1;                     ///< same seed, same bits
-  int threads = 1;                            ///< ≥ 1
-  bool quiet = false;                         ///< part of another command: prints errors only
+  std::optional<std::filesystem::path> figures;  ///< folder for figures as files of their own
+  bool force = false;                            ///< overwrite an existing result
+  bool json = false;                             ///< print only the summary on standard output
+  std::uint64_t seed = 1;                        ///< same seed, same bits
+  int threads = 1;                               ///< ≥ 1
+  bool quiet = false;                            ///< part of another command: prints errors only
 };
 
 }  // namespace app

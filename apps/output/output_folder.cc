@@ -25,17 +25,50 @@ fs::path besides(const fs::path& folder) {
   return error ? fs::path() : whole.parent_path();
 }
 
+/// What the folder of --figures holds is listed in this file of it.
+constexpr const char* figureList = "figures.tex";
+
+/// That file itself and the names in its lines "% file: NAME".
+std::vector<std::string> filesListedIn(const fs::path& list) {
+  std::vector<std::string> names = {figureList};
+  std::ifstream stream(list);
+  constexpr std::string_view begin = "% file: ";
+  for (std::string line; std::getline(stream, line);) {
+    const std::string name = line.substr(std::min(line.size(), begin.size()));
+    const bool isPlain = !name.empty() && !name.starts_with('.') && name.find('/') == name.npos;
+    if (line.starts_with(begin) && isPlain) names.push_back(name);
+  }
+  return names;
+}
+
 }  // namespace
 
 OutputFolder::OutputFolder(const CommandContext& context, std::vector<std::string> resultNames)
     : force_(context.force), inputs_(context.inputs) {
+  if (context.figures) figures_.reset(new OutputFolder(context, *context.figures, "--figures"));
   if (!context.out) return;
-  if (context.out->empty()) throw std::runtime_error("--out: the folder's name is empty");
-  folder_ = *context.out;
-  if (fs::exists(fs::status(folder_)) && !fs::is_directory(folder_)) {
-    throw std::runtime_error(fmt::format("--out {}: is not a folder", folder_.string()));
+  resultNames.insert(resultNames.end(), {"summary.json", "report.html", "reproduce.sh"});
+  open(*context.out, std::move(resultNames));
+  std::error_code ignored;
+  if (figures_ && fs::equivalent(folder_, figures_->folder_, ignored)) {
+    for (auto p = foldersMade_.rbegin(); p != foldersMade_.rend(); ++p) fs::remove(*p, ignored);
+    throw std::invalid_argument(fmt::format(
+        "--figures {}: is the folder of --out, must be another one", figures_->folder_.string()));
   }
-  resultNames.insert(resultNames.end(), {"summary.json", "report.html"});
+}
+
+OutputFolder::OutputFolder(const CommandContext& context, const fs::path& folder,
+                           std::string option)
+    : option_(std::move(option)), force_(context.force), inputs_(context.inputs) {
+  open(folder, filesListedIn(folder / figureList));
+}
+
+void OutputFolder::open(const fs::path& folder, std::vector<std::string> resultNames) {
+  if (folder.empty()) throw std::runtime_error(option_ + ": the folder's name is empty");
+  folder_ = folder;
+  if (fs::exists(fs::status(folder_)) && !fs::is_directory(folder_)) {
+    throw std::runtime_error(fmt::format("{} {}: is not a folder", option_, folder_.string()));
+  }
   for (const std::string& name : resultNames) mayBeWritten(name);
   resultNames_ = resultNames;
 
@@ -57,8 +90,8 @@ OutputFolder::OutputFolder(const CommandContext& context, std::vector<std::strin
   }
   if (error) {
     for (auto p = foldersMade_.rbegin(); p != foldersMade_.rend(); ++p) fs::remove(*p);
-    throw std::runtime_error(
-        fmt::format("--out {}: cannot be written to ({})", folder_.string(), error.message()));
+    throw std::runtime_error(fmt::format("{} {}: cannot be written to ({})", option_,
+                                         folder_.string(), error.message()));
   }
   removeLeftovers(folder_);
   removeLeftovers(besides(folder_));
@@ -90,15 +123,15 @@ void OutputFolder::mayBeWritten(const std::string& name) const {
     std::error_code ignored;
     if (!fs::equivalent(folder_ / name, input, ignored)) continue;
     throw std::invalid_argument(fmt::format(
-        "{}: is an input and would be overwritten; choose another --out", input.string()));
+        "{}: is an input and would be overwritten; choose another {}", input.string(), option_));
   }
   if (fs::is_directory(fs::symlink_status(folder_ / name))) {
-    throw std::runtime_error(fmt::format("--out {}: {} is a folder, a file of this name is written",
-                                         folder_.string(), name));
+    throw std::runtime_error(fmt::format("{} {}: {} is a folder, a file of this name is written",
+                                         option_, folder_.string(), name));
   }
   if (force_ || !fs::exists(fs::symlink_status(folder_ / name))) return;
-  throw std::runtime_error(
-      fmt::format("--out {}: {} exists already; --force overwrites it", folder_.string(), name));
+  throw std::runtime_error(fmt::format("{} {}: {} exists already; --force overwrites it", option_,
+                                       folder_.string(), name));
 }
 
 void OutputFolder::write(const std::string& name,
@@ -124,6 +157,14 @@ void OutputFolder::writeFile(const std::string& name,
   writer(mark_->temporaryPath(name));
   unfinished_.clear();
   finished_.push_back(name);
+}
+
+void OutputFolder::makeExecutable(const std::string& name) {
+  if (!active()) return;
+  const fs::path file = mark_->temporaryPath(name);
+  // by those who may read it
+  const auto readers = static_cast<unsigned>(fs::status(file).permissions()) & 0444U;
+  fs::permissions(file, static_cast<fs::perms>(readers >> 2U), fs::perm_options::add);
 }
 
 std::string OutputFolder::hashOf(const std::string& name) const {

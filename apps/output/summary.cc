@@ -25,6 +25,30 @@ void Summary::setSimulation(const std::string& integrator, double step, double d
   set("step_s", step);
   set("duration_s", duration);
   set("wall_s", wallTime);
+  const std::string every = fmt::format(" of {} s", numberText(step));
+  const auto say = [&](const std::string& sentence, Publication source) {
+    methods_.say(Methods::Part::simulation, sentence, {source});
+  };
+  if (integrator == "vi" || integrator == "vi-left") {
+    say(fmt::format("Motions are simulated by a midpoint variational integrator ({}){} with a "
+                    "fixed step{}; "
+                    "the states of the muscles are solved implicitly within each step.",
+                    citation(Publication::wilson),
+                    integrator == "vi" ? ", the forces shared by both ends of a step,"
+                                       : ", the forces at the beginning of a step,",
+                    every),
+        Publication::wilson);
+  } else if (integrator == "cvode") {
+    say(fmt::format("Motions are simulated by CVODE ({}) with a variable step, its values taken at "
+                    "steps{}.",
+                    citation(Publication::hindmarsh2005), every),
+        Publication::hindmarsh2005);
+  } else if (integrator == "rk4") {
+    methods_.say(Methods::Part::simulation,
+                 "Motions are simulated by the classical Runge–Kutta method of fourth order with a "
+                 "fixed step" +
+                     every + ".");
+  }
 }
 
 void Summary::warn(const std::string& sentence) {
@@ -36,7 +60,8 @@ void Summary::warn(const std::string& sentence) {
 std::string Summary::commandLine() const {
   std::string line = "fisherhill";
   for (std::size_t i = 1; i < context_.commandLine.size(); ++i) {
-    line += " " + shellWord(context_.commandLine[i]);
+    line += ' ';
+    line += shellWord(context_.commandLine[i]);
   }
   return line;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "output/command_context.h"
+#include "output/methods.h"
 
 namespace app {
 
@@ -29,11 +30,16 @@ class Summary {
   /// Adds one value: a number, text, list or object.
   void set(const std::string& name, nlohmann::ordered_json value);
 
-  /// The simulation's own entries: integrator, step_s, duration_s, wall_s.
+  /// The simulation's own entries: integrator, step_s, duration_s, wall_s; and what the methods say
+  /// of it.
   void setSimulation(const std::string& integrator, double step, double duration, double wallTime);
 
   /// Prints a warning on standard error and keeps it in the summary.
   void warn(const std::string& sentence);
+
+  /// How the result was made, for the report.
+  Methods& methods() { return methods_; }
+  const Methods& methods() const { return methods_; }
 
   /// The command line, quoted for a shell.
   std::string commandLine() const;
@@ -49,6 +55,7 @@ class Summary {
   std::vector<InputFile> inputs_;
   nlohmann::ordered_json figures_ = nlohmann::ordered_json::object();
   std::vector<std::string> warnings_;
+  Methods methods_;
 };
 
 }  // namespace app

@@ -15,6 +15,7 @@ std::unique_ptr<Command> designCommand();
 std::unique_ptr<Command> discoverCommand(RobotDiscovery inRobot);
 std::unique_ptr<Command> emgCommand();
 std::unique_ptr<Command> exploreCommand();
+std::unique_ptr<Command> indexCommand();
 std::unique_ptr<Command> momentArmsCommand();
 std::unique_ptr<Command> muscleStatesCommand();
 std::unique_ptr<Command> replayCommand();
@@ -35,6 +36,7 @@ std::vector<std::unique_ptr<Command>> allCommandsWith(std::unique_ptr<Command> r
   commands.push_back(emgCommand());
   commands.push_back(ensembleCommand(threadPool));
   commands.push_back(exploreCommand());
+  commands.push_back(indexCommand());
   commands.push_back(momentArmsCommand());
   commands.push_back(muscleStatesCommand());
   commands.push_back(renderCommand(drawInOtherProgram));

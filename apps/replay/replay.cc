@@ -7,6 +7,7 @@
 #include "bio/discovery/with_experimental_conditions.h"
 #include "bio/opensim/osim_file.h"
 #include "command/command.h"
+#include "options/model_methods.h"
 #include "options/quantity.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
@@ -100,6 +101,7 @@ class Replay : public Command {
       beginning.point = std::move(setting.start);
       system = bio::MusculoskeletalSystem(model, systemOptions(simulation_));
     }
+    sayExcitations(system, summary.methods());
     bio::TrialReplay replay;
     {
       ProgressBar bar("replay");

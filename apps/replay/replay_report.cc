@@ -8,6 +8,7 @@
 #include "bio/model/units.h"
 #include "bio/observation/observed_motion.h"
 #include "bio/simulation/integrator_names.h"
+#include "options/excitation_figure.h"
 #include "output/text.h"
 
 namespace app {
@@ -104,25 +105,6 @@ Figure perMuscle(const ReplayFindings& f, const std::string& title, const std::s
     figure.series.push_back({.name = f.system.muscles()[i].name,
                              .x = f.replay.motion.time,
                              .y = inUnit(rows.row(static_cast<Eigen::Index>(i)), factor)});
-  }
-  return figure;
-}
-
-/// Excitations of the muscles, in the rows of the trial. A muscle without a column is left out: its
-/// excitation is the baseline throughout.
-Figure excitationFigure(const ReplayFindings& f) {
-  Figure figure{.title = "Excitations",
-                .xLabel = "Time [s]",
-                .yLabel = "Excitation [1]",
-                .caption = "From the trial, 0 to 1; straight lines between its rows."};
-  const double baseline = bio::TrialOptions{}.baseline;
-  for (const bio::SystemMuscle& muscle : f.system.muscles()) {
-    const auto& names = f.trial.muscles;
-    const auto at = std::find(names.begin(), names.end(), muscle.name);
-    if (at == names.end()) continue;
-    const Eigen::VectorXd values = f.trial.excitations.col(at - names.begin());
-    if ((values.array() == baseline).all()) continue;
-    figure.series.push_back({.name = muscle.name, .x = asList(f.trial.times), .y = asList(values)});
   }
   return figure;
 }
@@ -293,9 +275,11 @@ Report replayReport(const ReplayFindings& f) {
     Figure figure = reactionFigure(f, ofRotations);
     if (!figure.series.empty()) report.details.push_back(std::move(figure));
   }
-  report.details.push_back(Section{"Muscles"});
-  Figure excitations = excitationFigure(f);
-  if (!excitations.series.empty()) report.details.push_back(std::move(excitations));
+  report.details.push_back(Section{
+      "Muscles",
+      "What drives the motion: excitations of the trial, and what the muscles make of them."});
+  if (auto excitations = excitationFigure(f.trial, &f.system))
+    report.details.push_back(*std::move(excitations));
   report.details.push_back(
       perMuscle(f, "Activations", "Activation [1]", f.replay.motion.activation, 1));
   report.details.push_back(perMuscle(f, "Tendon forces", "Force [N]", f.muscles.tendonForce, 1));
@@ -309,7 +293,8 @@ Report replayReport(const ReplayFindings& f) {
                                      f.muscles.momentArm, 1e3));
   report.details.push_back(
       perMuscle(f, "Fibre lengths", "Length [mm]", f.replay.motion.fibreLength, 1e3));
-  report.details.push_back(Section{"Energy and numerics"});
+  report.details.push_back(
+      Section{"Energy and numerics", "Checks of the integration, not of the model."});
   report.details.push_back(energyFigure(f));
   report.details.push_back(
       Paragraph{fmt::format("{} steps of {} s with {:.3g} Newton iterations per step, {} of them "
@@ -319,7 +304,7 @@ Report replayReport(const ReplayFindings& f) {
                                 std::max(1.0, static_cast<double>(f.replay.motion.steps)),
                             f.replay.motion.halvedSteps, f.replay.motion.wallSeconds * 1e3)});
   if (!f.system.notes().empty()) {
-    report.details.push_back(Section{"Notes"});
+    report.details.push_back(Section{"Notes", "How the model was read."});
     for (const std::string& note : f.system.notes()) report.details.push_back(Paragraph{note});
   }
   return report;

@@ -10,6 +10,7 @@
 #include "info/version.h"
 #include "output/json_text.h"
 #include "output/text.h"
+#include "report/series_stroke.h"
 #include "report/thinned_series.h"
 #include "report_assets.h"
 
@@ -53,7 +54,10 @@ void mustBeAsLong(const Figure& figure, const Series& series, const std::vector<
 }
 
 std::string html(const Section& section) {
-  return fmt::format("<h2>{}</h2>\n", htmlText(section.title));
+  std::string text = fmt::format("<h2>{}</h2>\n", htmlText(section.title));
+  if (!section.context.empty())
+    text += fmt::format("<p class=\"context\">{}</p>\n", htmlText(section.context));
+  return text;
 }
 
 std::string html(const Paragraph& paragraph) {
@@ -147,11 +151,25 @@ void addFigureRows(Table& table, const std::string& name, const Json& value) {
   }
 }
 
+std::string methods(const Methods& methods) {
+  if (methods.isEmpty()) return "";
+  std::string text = html(Section{"Methods", "May be quoted; it says only what was used here."});
+  text += html(Paragraph{methods.paragraph()});
+  const auto list = [&](const char* title, const std::vector<std::string>& items) {
+    if (items.empty()) return;
+    text += fmt::format("<h3>{}</h3>\n<ul>\n", title);
+    for (const std::string& item : items) text += fmt::format("<li>{}</li>\n", htmlText(item));
+    text += "</ul>\n";
+  };
+  list("Assumptions", methods.assumptions());
+  list("References", methods.references());
+  return text;
+}
+
 std::string provenance(const Summary& summary) {
   std::string text = html(Section{"Numbers of this result"});
-  Table figures{"", {"name (unit at its end)", "value"}, {}};
-  addFigureRows(figures, "", summary.figures());
-  for (auto& row : figures.rows) row.front().erase(0, 1);  // the dot before a top-level name
+  Table figures = summaryTable(summary);
+  figures.title.clear();
   text += html(figures);
 
   text += html(Section{"Provenance"});
@@ -182,17 +200,18 @@ nlohmann::ordered_json figureJson(const Figure& figure) {
                {"xLog", figure.xScale == AxisScale::logarithmic},
                {"yLog", figure.yScale == AxisScale::logarithmic},
                {"series", Json::array()}};
-  for (const Series& whole : figure.series) {
+  for (std::size_t i = 0; i < figure.series.size(); ++i) {
+    const Series& whole = figure.series[i];
     mustBeAsLong(figure, whole, whole.y, "y");
     if (!whole.bandLow.empty() || !whole.bandHigh.empty()) {
       mustBeAsLong(figure, whole, whole.bandLow, "bandLow");
       mustBeAsLong(figure, whole, whole.bandHigh, "bandHigh");
     }
     const Series series = thinned(whole);
-    Json one = {{"name", series.name},
-                {"style", styleName(series.style)},
-                {"x", plotNumbers(series.x)},
-                {"y", plotNumbers(series.y)}};
+    const SeriesStroke stroke = strokeOf(figure, i);
+    Json one = {{"name", series.name},        {"style", styleName(series.style)},
+                {"colour", stroke.colour},    {"dashes", stroke.dashes},
+                {"x", plotNumbers(series.x)}, {"y", plotNumbers(series.y)}};
     if (!series.bandLow.empty() || !series.bandHigh.empty()) {
       one["low"] = plotNumbers(series.bandLow);
       one["high"] = plotNumbers(series.bandHigh);
@@ -200,6 +219,13 @@ nlohmann::ordered_json figureJson(const Figure& figure) {
     json["series"].push_back(std::move(one));
   }
   return json;
+}
+
+Table summaryTable(const Summary& summary) {
+  Table table{"Numbers of this result", {"name (unit at its end)", "value"}, {}};
+  addFigureRows(table, "", summary.figures());
+  for (auto& row : table.rows) row.front().erase(0, 1);  // the dot before a top-level name
+  return table;
 }
 
 std::string renderReport(const Report& report, const Summary& summary) {
@@ -220,6 +246,7 @@ std::string renderReport(const Report& report, const Summary& summary) {
   for (const auto& part : report.details) {
     text += std::visit([](const auto& item) { return html(item); }, part);
   }
+  text += methods(summary.methods());
   text += provenance(summary);
   text += "</main>\n";
   text += fmt::format("<script>{}\n{}</script>\n", assets::uplotJs, assets::reportJs);

@@ -47,7 +47,7 @@ struct Figure {
   AxisScale yScale = AxisScale::linear;
 };
 
-/// The data of a figure for the plotting script: title, labels, scales and series with at most six
+/// The data of a figure for the page's script: title, labels, scales and series with at most six
 /// digits, NaN as null. Very long series are reduced to their highest and lowest values
 /// (thinned_series.h), and the report says so.
 /// @throws std::invalid_argument if a series' x and y differ in length
@@ -77,14 +77,17 @@ struct Paragraph {
   std::string text = {};
 };
 
+/// The parts that follow belong to it, up to the next one.
 struct Section {
   std::string title = {};
+  std::string context =
+      {};  ///< what it shows, and how to read it; one or two sentences; may be empty
 };
 
 using ReportPart = std::variant<Section, Paragraph, Figure, Table, Picture, VectorDrawing>;
 
-/// A report: title, verdict and main picture or figure, then the details in their order, then the
-/// provenance, which is taken from the summary.
+/// A report: title, verdict and main picture or figure, then the details in their order, then
+/// methods, numbers and provenance, which are taken from the summary.
 struct Report {
   std::string title = {};    ///< what was run: "Replay of trial_a.sto on elbow8.osim"
   std::string verdict = {};  ///< the answer in one sentence
@@ -92,6 +95,9 @@ struct Report {
   std::optional<Figure> mainFigure = {};
   std::vector<ReportPart> details = {};
 };
+
+/// The numbers and texts of a summary, by their names.
+Table summaryTable(const Summary& summary);
 
 /// @throws std::invalid_argument if a series' x and y, or a table's columns and row, differ in
 ///   length, or a picture is not a PNG, or a drawing not an SVG

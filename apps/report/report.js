@@ -1,11 +1,6 @@
 "use strict";
 // Draws every figure whose numbers stand in a script element beside its div.plot.
 (() => {
-  // Okabe and Ito's palette, told apart by colour-blind readers; grey stands for its yellow, which
-  // is too pale on white.
-  const colours = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#56B4E9",
-    "#808080"];
-  const dashes = [[], [10, 5], [3, 4], [12, 4, 3, 4]];
   const font = '14px "Source Sans 3", "Segoe UI", "Liberation Sans", Arial, sans-serif';
 
   const numberText = (value, digits) => {
@@ -51,19 +46,37 @@
     values: (plot, values) => values.map(v => v === null ? "" : numberText(v, 8)),
   });
 
+  // A piece of the curve for the legend: a row in black and white is told by its dashes.
+  const sample = curve => {
+    const one = (name, attributes) => {
+      const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+      Object.entries(attributes).forEach(([key, value]) => element.setAttribute(key, value));
+      return element;
+    };
+    const svg = one("svg", { width: 34, height: 10, style: "display:block", "aria-hidden": "true" });
+    svg.append(curve.style === "points" ? one("circle", { cx: 17, cy: 5, r: 4, fill: curve.colour })
+      : one("path", { d: "M0 5H34", stroke: curve.colour, "stroke-width": curve.style === "path" ? 1.5 : 2.5,
+        "stroke-dasharray": curve.dashes.join(" ") || "none" }));
+    return svg;
+  };
+
   const draw = (place, figure) => {
-    const tables = figure.series.map(curve => tableOf(curve, figure));
+    // points first, so that the lines, which are thinner, lie above them
+    const curves = figure.series.filter(curve => curve.style === "points")
+      .concat(figure.series.filter(curve => curve.style !== "points"));
+    const tables = curves.map(curve => tableOf(curve, figure));
     const data = tables.length ? uPlot.join(tables) : [[]];
     const series = [{ label: figure.xLabel, value: (plot, v) => text(v) }];
-    const bands = [];
-    figure.series.forEach((curve, i) => {
-      const colour = colours[i % colours.length];
+    const bands = [], curveOf = new Map();
+    curves.forEach(curve => {
+      const colour = curve.colour;
       const points = curve.style === "points";
-      const turn = Math.floor(i / colours.length) + (curve.style === "dashed" ? 1 : 0);
+      const size = curve.x.length > 600 ? 4 : curve.x.length > 60 ? 5 : 7;
+      curveOf.set(series.length, curve);
       series.push({
         label: curve.name, stroke: colour, width: points ? 0 : curve.style === "path" ? 1 : 2,
-        dash: dashes[turn % dashes.length],
-        points: points ? { show: true, size: 6, stroke: colour, fill: colour }
+        dash: curve.dashes,
+        points: points ? { show: true, size, stroke: colour, fill: colour }
           : { show: figure.xLog && curve.style !== "path" },
         paths: points ? () => null : curve.style === "path" ? pathOf(curve) : undefined,
         value: (plot, v) => text(v),
@@ -86,21 +99,16 @@
       legend: { live: true },
     }, data, place);
 
-    // The edges of a band need no line of their own in the legend; dashes and points show there.
+    // The edges of a band need no line of their own in the legend.
     const rows = place.querySelectorAll(".u-legend .u-series");
     series.forEach((one, i) => {
       if (one.class === "band") rows[i].style.display = "none";
       const marker = rows[i].querySelector(".u-marker");
-      if (!marker || !one.stroke || i === 0) return;
-      const points = one.width === 0;
-      const style = points ? "dotted" : one.dash && one.dash.length ? "dashed" : "solid";
-      marker.style.cssText = points
-        ? `width:8px;height:8px;border-radius:50%;border:0;background:${colours[colourIndex(i)]}`
-        : `width:22px;height:0;border:0;border-top:3px ${style} ${colours[colourIndex(i)]}`;
+      if (marker && curveOf.has(i)) {
+        marker.style.cssText = "width:34px;height:10px;border:0;background:none";
+        marker.append(sample(curveOf.get(i)));
+      }
     });
-    function colourIndex(row) {
-      return series.slice(1, row).filter(one => one.class !== "band").length % colours.length;
-    }
     window.addEventListener("resize", () => plot.setSize({ width: place.clientWidth, height: 340 }));
   };
 

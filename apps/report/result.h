@@ -7,7 +7,8 @@
 
 namespace app {
 
-/// The last step of every subcommand: writes summary.json and report.html, gives all files their
+/// The last step of every subcommand: writes summary.json, report.html, reproduce.sh and what
+/// --figures asks for, gives all files their
 /// final names, and prints the verdict, the summary's values and the path of the report or, with
 /// --json, only the summary.
 void deliver(const CommandContext& context, const Summary& summary, const Report& report,

@@ -156,6 +156,7 @@ class Sensitivity : public Command {
                           findings.local ? findings.local->motion.wallSeconds
                                          : findings.sweeps.front().nominal.wallSeconds);
     tellSensitivity(findings, summary);
+    sayMethods(findings, summary.methods());
     deliver(context, summary, sensitivityReport(findings), folder);
     bool complete = true;
     for (const bio::Sweep& sweep : findings.sweeps) {

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "bio/model/units.h"
+#include "options/excitation_figure.h"
 #include "output/json_text.h"
 #include "output/text.h"
 
@@ -347,6 +348,10 @@ Report sensitivityReport(const SensitivityFindings& f) {
     report.mainFigure = sweepFigure(f, f.sweeps.front());
     report.details.push_back(sweepTable(f, f.sweeps.front()));
   }
+  if (auto excitations = excitationFigure(f.trial)) {
+    excitations->title = fmt::format("Excitations of {}", f.trial.file);
+    report.details.push_back(*std::move(excitations));
+  }
   if (!f.information) return report;
   if (report.mainFigure) {
     report.details.push_back(courseFigure(f));
@@ -354,10 +359,12 @@ Report sensitivityReport(const SensitivityFindings& f) {
     report.mainFigure = courseFigure(f);
   }
   const bio::ParameterInformation& information = *f.information;
-  report.details.push_back(Section{"Influence on the motion"});
+  report.details.push_back(
+      Section{"Influence on the motion", "By how much each parameter moves what is observed."});
   report.details.push_back(
       rankingTable(f, "Sorted by influence", information.normalisedSensitivity, 25));
-  report.details.push_back(Section{"Identifiability"});
+  report.details.push_back(
+      Section{"Identifiability", "How accurately these trials could determine each parameter."});
   report.details.push_back(
       Paragraph{"Bounds are Cramér–Rao standard deviations. Alone: every other parameter is known. "
                 "Jointly: all are estimated together, each with its prior. A parameter is "

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bio/analysis/sensitivity_study.h"
+#include "output/methods.h"
 #include "report/report.h"
 #include "report/result.h"
 
@@ -54,6 +55,9 @@ void writeSweep(const bio::Sweep& sweep, const bio::Coordinate& coordinate, std:
 /// profile.csv and global.csv
 void writeProfile(const bio::ProfileFinding& finding, std::ostream& out);
 void writeGlobal(const SensitivityFindings& findings, std::ostream& out);
+
+/// How the numbers were made.
+void sayMethods(const SensitivityFindings& findings, Methods& methods);
 
 /// All of these that there is something for.
 void writeTables(const SensitivityFindings& findings, OutputFolder& folder);

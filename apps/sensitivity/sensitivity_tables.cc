@@ -96,4 +96,36 @@ void writeTables(const SensitivityFindings& findings, OutputFolder& folder) {
   }
 }
 
+void sayMethods(const SensitivityFindings& f, Methods& methods) {
+  constexpr auto inference = Methods::Part::inference;
+  if (f.local) {
+    methods.say(inference,
+                "Sensitivities are exact derivatives of the simulated motion with respect to the "
+                "parameters.");
+  }
+  if (f.information) {
+    methods.say(
+        inference,
+        fmt::format(
+            "The Fisher information is that of {} samples with independent normal noise{}; bounds "
+            "are Cramér–Rao bounds.",
+            f.samples,
+            f.observed.empty()
+                ? fmt::format(" of {} {}", numberText(f.noise * f.shownFactor(), 3), f.shownUnit())
+                : ""));
+    methods.say(inference,
+                "A parameter counts as identifiable if its bound, combined with the prior, is at "
+                "most half the "
+                "prior standard deviation.");
+    methods.assume(
+        "Bounds hold for small changes of the parameters and a model without other errors.");
+  }
+  if (f.profile)
+    methods.say(inference, "The profile likelihood holds one parameter and fits the others anew.");
+  if (f.global.morris)
+    methods.say(inference, "Elementary effects are those of Morris's screening.");
+  if (f.global.sobol)
+    methods.say(inference, "Sobol indices are estimated from points of Saltelli's scheme.");
+}
+
 }  // namespace app

@@ -28,9 +28,10 @@ TEST(CalibrateCommand, WritesTheModelTheSummaryAndTheReport) {
                                               "--parameters", "TRI.radius,hand.mass", "--profile",
                                               "hand.mass", "--starts", "3", "--out", out});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(scratch.listing(), testing::UnorderedElementsAre(
-                                     "out", "out/calibrated.osim", "out/covariance.csv",
-                                     "out/parameters.csv", "out/report.html", "out/summary.json"));
+  EXPECT_THAT(scratch.listing(),
+              testing::UnorderedElementsAre("out", "out/calibrated.osim", "out/covariance.csv",
+                                            "out/parameters.csv", "out/report.html",
+                                            "out/reproduce.sh", "out/summary.json"));
   const auto json = nlohmann::json::parse(contentOf(out + "/summary.json"));
   EXPECT_EQ(json["inputs"].size(), 3u);
   EXPECT_LT(json["rmse_train_deg"].get<double>(),

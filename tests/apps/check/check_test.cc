@@ -83,10 +83,10 @@ TEST(CheckCommand, WritesSummaryAndReportIntoANewFolder) {
   const std::string out = (scratch / "a/b").string();
   const ProgramResult result = runFisherHill({"check", file, "--out", out});
   EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(scratch.listing(),
-              ElementsAre("a", "a/b", "a/b/report.html", "a/b/summary.json", "good.csv"));
+  EXPECT_THAT(scratch.listing(), ElementsAre("a", "a/b", "a/b/report.html", "a/b/reproduce.sh",
+                                             "a/b/summary.json", "good.csv"));
   const auto json = nlohmann::json::parse(support::contentOf(out + "/summary.json"));
-  EXPECT_THAT(json["files"], ElementsAre("report.html"));
+  EXPECT_THAT(json["files"], ElementsAre("report.html", "reproduce.sh"));
   EXPECT_THAT(result.out, HasSubstr("Report: " + out + "/report.html"));
 }
 

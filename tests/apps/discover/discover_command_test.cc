@@ -23,10 +23,10 @@ TEST(DiscoverCommand, NamesTheDampingThatIsHiddenAddsItAndFindsNothingMore) {
   const ProgramResult result = runFisherHill(
       {"discover", elbow, train, "--noise-deg", "0.5", "--max-effects", "1", "--out", out});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(scratch.listing(),
-              testing::UnorderedElementsAre("out", "out/report.html", "out/summary.json",
-                                            "out/verdict.json", "out/with_effect.osim",
-                                            "out/effect_only.osim", "out/parameters.csv"));
+  EXPECT_THAT(scratch.listing(), testing::UnorderedElementsAre(
+                                     "out", "out/report.html", "out/reproduce.sh",
+                                     "out/summary.json", "out/verdict.json", "out/with_effect.osim",
+                                     "out/effect_only.osim", "out/parameters.csv"));
   const auto verdict = nlohmann::json::parse(contentOf(out + "/verdict.json"));
   EXPECT_EQ(verdict["verdict"], "named");
   const auto told = nlohmann::json::parse(contentOf(out + "/summary.json"));

@@ -324,4 +324,14 @@ TEST(VerdictSchema, HoldsWhatIsFoundInARobot) {
   EXPECT_TRUE(verdict["localisation"].contains("inputs"));
 }
 
+TEST(SummarySchemaOfIndex, HoldsWhatIsPrinted) {
+  const ScratchFolder scratch;
+  ASSERT_EQ(runFisherHill({"replay", model, slow, "--out", (scratch / "a").string()}).status, 0);
+  const ProgramResult result = runFisherHill({"index", scratch.path().string(), "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json document = json::parse(result.out);
+  EXPECT_EQ(summarySchema().errorsOf(document), "");
+  expectEachKeyToBeHeld(summarySchema(), document, {"results", "sentence"});
+}
+
 }  // namespace

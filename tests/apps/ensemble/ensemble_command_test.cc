@@ -49,8 +49,8 @@ TEST(EnsembleCommand, GivesARowForEveryDrawWithItsParametersAndOutputs) {
   EXPECT_EQ(json["rms_from_nominal_deg"]["nominal"], 0);
   EXPECT_EQ(linesOf(contentOf(out + "/band.csv")).size(), 47u);
   EXPECT_THAT(contentOf(out + "/report.html"), HasSubstr("elbow_flexion over the ensemble"));
-  EXPECT_EQ(scratch.listing(),
-            (Words{"out", "out/band.csv", "out/draws.csv", "out/report.html", "out/summary.json"}));
+  EXPECT_EQ(scratch.listing(), (Words{"out", "out/band.csv", "out/draws.csv", "out/report.html",
+                                      "out/reproduce.sh", "out/summary.json"}));
 }
 
 // The draw's own parameters, given to replay's model by another command, give its outputs.

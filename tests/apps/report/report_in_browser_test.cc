@@ -5,6 +5,7 @@
 #include <fstream>
 #include <limits>
 
+#include "index/index_page.h"
 #include "report/report.h"
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
@@ -77,6 +78,35 @@ TEST(ReportInBrowser, WouldBeHeardIfSomethingWentWrong) {
   std::string html = renderReport({}, Summary({}));
   html.insert(html.find("<main>"), "<img src=\"http://example.invalid/a.png\">");
   EXPECT_THAT(openInBrowser(html, scratch).err, testing::HasSubstr("CONSOLE"));
+}
+
+TEST(IndexInBrowser, SortsAndShowsTwoResultsSideBySideAsText) {
+  FoundResults found;
+  for (const char* name : {"b", "a", "<img src=x onerror=console.log(1)>"}) {
+    FoundResult result;
+    result.folder = name;
+    result.subcommand = "replay";
+    result.numbers = {{"rms_error_deg", found.results.empty() ? 2.0 : 3.0},
+                      {name, "<script>console.log(2)</script>"}};
+    found.results.push_back(std::move(result));
+  }
+  std::string page = indexPage(found, "out", "");
+  // what a reader does: sorts by the name, then chooses b and the third
+  page.insert(page.find("</body>"), R"(<script>
+    const boxes = document.querySelectorAll("#results input");
+    document.querySelector("#results th button").click();
+    for (const i of [0, 2]) {
+      boxes[i].checked = true;
+      boxes[i].dispatchEvent(new Event("change", { bubbles: true }));
+    }</script>)");
+  const ScratchFolder scratch;
+  const ProgramResult result = openInBrowser(page, scratch);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, testing::Not(testing::HasSubstr("CONSOLE")));
+  EXPECT_THAT(result.out,
+              testing::HasSubstr("<td>rms_error_deg</td><td>2</td><td>3</td><td>+50 %</td>"));
+  EXPECT_THAT(result.out, testing::HasSubstr("aria-sort=\"ascending\""));
+  EXPECT_LT(result.out.find("compare a\""), result.out.find("compare b\""));
 }
 
 }  // namespace

@@ -147,5 +147,21 @@ TEST(Report, KeepsADrawingInsideThePage) {
   EXPECT_THROW(renderReport(report, Summary({})), std::invalid_argument);
 }
 
+TEST(Report, HasSectionsWithContextAndTheMethodsThatWereUsed) {
+  Report report = smallReport();
+  report.details = {Section{"Muscles", "What drives <it>."}};
+  Summary summary({});
+  EXPECT_THAT(renderReport(report, summary),
+              AllOf(HasSubstr("<h2>Muscles</h2>\n<p class=\"context\">What drives &lt;it&gt;.</p>"),
+                    Not(HasSubstr("<h2>Methods</h2>"))));
+  summary.methods().say(Methods::Part::model, "Two muscles (Thelen, 2003).",
+                        {Publication::thelen2003});
+  summary.methods().assume("Nothing <moves>.");
+  EXPECT_THAT(renderReport(report, summary),
+              AllOf(HasSubstr("Two muscles (Thelen, 2003).</p>"),
+                    HasSubstr("<li>Nothing &lt;moves&gt;.</li>"),
+                    HasSubstr("<li>D. G. Thelen, Adjustment of muscle mechanics")));
+}
+
 }  // namespace
 }  // namespace app

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "bio/model/model.h"
+#include "bio/simulation/musculoskeletal_system.h"
+#include "output/methods.h"
+
+namespace app {
+
+/// What is to be said of a model that is simulated: its coordinates, the classes of its muscles,
+/// its paths.
+void sayModel(const bio::Model& model, const bio::MusculoskeletalSystem& system, Methods& methods);
+
+/// What is to be said of trials whose excitations drive the model.
+void sayExcitations(const bio::MusculoskeletalSystem& system, Methods& methods);
+
+}  // namespace app
