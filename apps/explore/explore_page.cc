@@ -29,8 +29,8 @@ std::string hashSource(const std::string& script) {
 }
 
 /// The template with {{name}} replaced; what is put in is not searched again.
-std::string filled(std::string_view pattern,
-                   const std::vector<std::pair<std::string, std::string>>& values) {
+std::string filledPage(std::string_view pattern,
+                       const std::vector<std::pair<std::string, std::string>>& values) {
   std::string text;
   while (true) {
     const std::size_t open = pattern.find("{{");
@@ -75,18 +75,19 @@ std::string explorePage(const std::string& title, const std::string& verdict,
       "default-src 'none'; script-src {} {} 'wasm-unsafe-eval' blob:; worker-src blob:; "
       "style-src 'unsafe-inline'; img-src data: blob:",
       hashSource(libraries), hashSource(scripts));
-  return filled(assets::pageHtml,
-                {{"policy", policy},
-                 {"title", htmlText(title)},
-                 {"licences", fmt::format("{}\n{}", assets::threeLicence, assets::uplotLicence)},
-                 {"styles", fmt::format("{}\n{}", assets::uplotCss, assets::pageCss)},
-                 {"verdict", htmlText(verdict)},
-                 {"about", about(summary)},
-                 {"data", scriptText(data)},
-                 {"core", std::string(assets::liveCore)},
-                 {"worker", fmt::format("{}\n{}", assets::coreJs, assets::workerJs)},
-                 {"libraries", libraries},
-                 {"scripts", scripts}});
+  return filledPage(
+      assets::pageHtml,
+      {{"policy", policy},
+       {"title", htmlText(title)},
+       {"licences", fmt::format("{}\n{}", assets::threeLicence, assets::uplotLicence)},
+       {"styles", fmt::format("{}\n{}", assets::uplotCss, assets::pageCss)},
+       {"verdict", htmlText(verdict)},
+       {"about", about(summary)},
+       {"data", scriptText(data)},
+       {"core", std::string(assets::liveCore)},
+       {"worker", fmt::format("{}\n{}", assets::coreJs, assets::workerJs)},
+       {"libraries", libraries},
+       {"scripts", scripts}});
 }
 
 }  // namespace app

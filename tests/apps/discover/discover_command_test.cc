@@ -63,6 +63,17 @@ TEST(DiscoverCommand, NamesTheDampingThatIsHiddenAddsItAndFindsNothingMore) {
   EXPECT_EQ(verdict["trials"][0]["rmse_nominal_deg"], verdict["gap"]["train"]["rmse_nominal_deg"]);
   EXPECT_EQ(runFisherHill({"check", out + "/with_effect.osim", out + "/effect_only.osim"}).status,
             0);
+
+  // a page shows it with and without the effect
+  const std::string page = (scratch / "page").string();
+  const ProgramResult explored =
+      runFisherHill({"explore", elbow, train, "--verdict", out, "--out", page});
+  ASSERT_EQ(explored.status, 0) << explored.err;
+  EXPECT_THAT(explored.out, HasSubstr("Missing: viscous joint damping.\n"));
+  const std::string html = contentOf(page + "/report.html");
+  for (const char* part : {"without it, all else as fitted", "with viscous joint damping",
+                           "elbow_flexion_visc.viscosity"})
+    EXPECT_THAT(html, HasSubstr(part));
   const auto rows = support::linesOf(contentOf(out + "/parameters.csv"));
   EXPECT_EQ(rows.at(0), "name,unit,nominal,estimate,sd,prior_sd,prior_z");
   EXPECT_EQ(rows.size(), 1 + verdict["fitted_parameters"].size());

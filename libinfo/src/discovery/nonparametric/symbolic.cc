@@ -46,7 +46,7 @@ std::vector<StateTerm> stateTermsOf(const Axis& axis) {
        [s](double, double w) { return std::tanh(w / s); }},
       {"q·q̇", "q*qdot", [](double q, double w) { return q * w; }},
   };
-  if (axis.isAngle()) {
+  if (axis.isInRadians()) {
     terms.push_back({"sin q", "sin(q)", [](double q, double) { return std::sin(q); }});
     terms.push_back({"cos q", "cos(q)", [](double q, double) { return std::cos(q); }});
   }

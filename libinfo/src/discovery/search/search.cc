@@ -252,7 +252,9 @@ const Fit& Search::simulation(const Effects& effects) {
       // nor may the nominal model be simulable with effects that were fitted beside other
       // parameters
       if (!entry.simulation)
-        entry.simulation = likelihood_->fit(hypothesis, still, nominal, {}, {25, 0.02});
+        entry.simulation = likelihood_->tryFit(hypothesis, still, nominal, {}, {25, 0.02});
+      // then what is known with the latent force has to do: a search never ends for this
+      if (!entry.simulation) entry.simulation = entry.fit;
     }
     ++fits_;
   }

@@ -13,8 +13,11 @@ constexpr int kRivals = 7;
 // More single effects that are fitted if nothing was found although, without the latent force, a
 // linear step of theirs promises evidence.
 constexpr std::size_t kMore = 8;
-constexpr double kAlmost = 0.5;       // share of the evidence that a further effect almost has
-constexpr std::size_t kPartners = 2;  // alternatives of each of two effects that are tried together
+constexpr double kAlmost = 0.5;  // share of the evidence that a further effect almost has
+// Alternatives of each of two effects that are tried together; one more where no further effect may
+// be added, since then nothing else tries the true one: two wrong effects may imitate two right
+// ones, one of which is only the third alternative (validation/discovery, the heavy slide).
+constexpr std::size_t kPartners = 2;
 
 class Selection {
  public:
@@ -172,7 +175,9 @@ class Selection {
     }
     std::sort(ranked.begin(), ranked.end());
     std::vector<std::size_t> best;
-    for (std::size_t i = 0; i < std::min(ranked.size(), kPartners); ++i)
+    const bool isFull = static_cast<int>(effects.size()) >= options_.maxEffects;
+    const std::size_t partners = kPartners + (isFull && effects.size() > 2 ? 1 : 0);
+    for (std::size_t i = 0; i < std::min(ranked.size(), partners); ++i)
       best.push_back(ranked[i].second);
     return best;
   }

@@ -60,7 +60,7 @@ struct Axis {
   double smallSpeed = 0.05;
 
   /// Whether its sine has a meaning.
-  bool isAngle() const { return unit.empty() || unit == "rad"; }
+  bool isInRadians() const { return unit.empty() || unit == "rad"; }
 };
 
 /// A node of the latent force.

@@ -23,8 +23,8 @@ struct SymbolicTerm {
 /// Description of a missing effect that is not in the catalogue.
 ///
 /// The formula is a sum of at most three of {1, q, q², q³, q̇, q̇|q̇|, q̇³, tanh(q̇/s), q·q̇, sin q,
-/// cos q, u_i, M_i, ∫M_i dt}: q the position of the axis, s its Axis::smallSpeed, sin and cos of
-/// angles only, u_i the inputs, M_i the moments of the driven actuators about it if the latent
+/// cos q, u_i, M_i, ∫M_i dt}: q the position of the axis, s its Axis::smallSpeed, sin and cos where
+/// q is in radians, u_i the inputs, M_i the moments of the driven actuators about it if the latent
 /// force has a channel for each. Its terms are forces
 /// at the nodes of that axis; with their score g and information S, after elimination of all
 /// quantities that are free in the fit and with the latent force in the covariance, the subset with
