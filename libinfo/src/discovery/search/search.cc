@@ -123,6 +123,13 @@ double Search::scoreOf(const Fit& fit) const {
   return fit.logEvidence - fit.noise.latent / options_.latentScale;
 }
 
+// A stop leaves the former likelihood, of which the entries are.
+void Search::scaleAt(const VectorXd& values) {
+  Likelihood scaled(data_, trials_, values, options_.latentTime);
+  likelihood_.emplace(std::move(scaled));
+  scaleValues_ = values;
+}
+
 void Search::calibrate() {
   report_("base model");
   improve({}, nominalValues(data_), kFirstSize);
@@ -135,8 +142,7 @@ void Search::calibrate() {
   mustWork();
   // evaluate the scale of the latent force along the measured motion, then repeat from both ends
   const Fit first = at({}).fit;
-  scaleValues_ = first.values;
-  likelihood_.emplace(data_, trials_, first.values, options_.latentTime);
+  scaleAt(first.values);
   entries_.clear();
   report_("base model");
   improve({}, first.values, kRaceSize);
@@ -167,8 +173,7 @@ VectorXd Search::drawn(std::uint64_t start) const {
 
 void Search::adopt(const SearchMemory& memory) {
   racedFromNominal_ = memory.racedFromNominal;
-  scaleValues_ = memory.scaleValues;
-  likelihood_.emplace(data_, trials_, scaleValues_, options_.latentTime);
+  scaleAt(memory.scaleValues);
   const auto again = [&](const Entry& entry) {
     report_(describe(data_, entry.effects));
     improve(entry.effects, entry.fit.values, entry.fit.noise.latent, &entry.fit);
@@ -198,8 +203,7 @@ void Search::adopt(const SearchMemory& memory) {
 }
 
 void Search::take(const SearchMemory& former) {
-  scaleValues_ = former.scaleValues;
-  likelihood_.emplace(data_, trials_, scaleValues_, options_.latentTime);
+  scaleAt(former.scaleValues);
   entries_ = former.entries;
   racedFromNominal_ = former.racedFromNominal;
 }

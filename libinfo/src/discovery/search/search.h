@@ -132,6 +132,8 @@ class Search {
   double significance(const Entry& entry, std::size_t effect) const;
   double bestScore() const;  ///< of all hypotheses
   double scoreOf(const Fit& fit) const;
+  /// Evaluates the scale of the latent force along the simulation with these values.
+  void scaleAt(const Eigen::VectorXd& values);
   void mustWork() const;  ///< @throws std::domain_error if the base could not be fitted
   /// @param near a fit whose latent force keeps the simulation near the data at the start; or null
   /// @param hopeless a slow first fit below this score is not continued
