@@ -55,11 +55,6 @@ Figure excitationFigure(const PlannedInputs& planned, const bio::MuscleGroup& gr
 
 }  // namespace
 
-bio::ShownUnit shownUnit(const std::string& unit) {
-  if (!unit.starts_with("rad")) return {1, unitText(unit)};
-  return {bio::degreesPerRadian, "deg" + unit.substr(3)};
-}
-
 const bio::Coordinate& PlannedInputs::coordinate(const std::string& name) const {
   return bio::findCoordinate(model, name);
 }

@@ -7,13 +7,11 @@
 #include "bio/model/units.h"
 #include "bio/observation/channel_information.h"
 #include "output/summary.h"
+#include "output/text.h"
 #include "report/report.h"
 
 /// The parts that the reports of all searches for experiments show.
 namespace app {
-
-/// Angles are shown in degrees, everything else in its unit.
-bio::ShownUnit shownUnit(const std::string& unit);
 
 /// A search for inputs of an experiment.
 struct PlannedInputs {

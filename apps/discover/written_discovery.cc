@@ -13,25 +13,6 @@ namespace {
 
 using bio::discover::RepairedTrial;
 
-/// The options of a command that say what is simulated.
-std::string optionsOf(const SimulationOptions& options, bool withStep) {
-  std::string text;
-  if (!options.areChosen)
-    for (const std::string& name : options.coordinates) text += " --coordinate " + shellWord(name);
-  for (const std::string& name : options.prescribed) text += " --prescribe " + shellWord(name);
-  if (options.prescribeCutoff)
-    text += fmt::format(" --prescribe-cutoff {}", *options.prescribeCutoff);
-  for (const Assignment& lock : options.locks)
-    text += " --lock " + shellWord(fmt::format("{}={}", lock.name, lock.value));
-  for (const std::string& name : options.wrapAsCylinder)
-    text += " --wrap-as-cylinder " + shellWord(name);
-  if (options.integrator != SimulationOptions().integrator)
-    text += " --integrator " + options.integrator;
-  if (options.ignoreExtra) text += " --ignore-extra";
-  if (withStep && options.step) text += fmt::format(" --step {}", *options.step);
-  return text;
-}
-
 /// The effects in the written model are only the closest match, or found with steps that are too
 /// long.
 bool mayBeWrong(const info::discover::Verdict& verdict) {
@@ -119,13 +100,13 @@ class DiscoveryWriter {
         written_.commands.emplace_back(
             file + ", original model",
             fmt::format("fisherhill replay {} {}{}", shellWord(request_.model), shellWord(file),
-                        optionsOf(typed, true)));
+                        typedOptions(typed, true)));
       if (written_.model.empty()) continue;
       const std::string model =
           folder_.active() ? folder_.path(written_.model).string() : written_.model;
       written_.commands.emplace_back(file + ", with all fitted parameters",
                                      fmt::format("fisherhill replay {} {}{}", shellWord(model),
-                                                 shellWord(replayed), optionsOf(typed, false)));
+                                                 shellWord(replayed), typedOptions(typed, false)));
     }
   }
 

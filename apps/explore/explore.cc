@@ -5,6 +5,7 @@
 
 #include "bio/analysis/sensitivity_study.h"
 #include "bio/model/units.h"
+#include "bio/opensim/osim_file.h"
 #include "bio/simulation/integrator_names.h"
 #include "command/command.h"
 #include "explore/explore_page.h"
@@ -14,6 +15,7 @@
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/json_text.h"
+#include "output/sha256.h"
 #include "output/text.h"
 #include "report/result.h"
 
@@ -22,17 +24,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// The model as fitted but without the effect, for the page's command line.
+const std::string withoutName = "without_effect.osim";
+
 /// What is measured, in the units in which people see it.
 Json channelsOf(const bio::Trial& trial, const bio::Model& model) {
   Json channels = Json::array();
   for (const bio::MeasuredChannel& channel : trial.measured) {
-    const std::string si = unitOf(channel.what, model);
-    const bool turns = si.starts_with("rad");
+    const bio::ShownUnit unit = shownUnit(unitOf(channel.what, model));
     channels.push_back(
         {{"name", nameOf(channel.what)},
          {"coordinate", channel.what.isCoordinate() ? channel.what.object : ""},
-         {"unit", turns ? "deg" + si.substr(3) : unitText(si)},
-         {"factor", turns ? bio::degreesPerRadian : 1.0},
+         {"unit", unit.name},
+         {"factor", unit.factor},
          {"times", std::vector<double>(channel.times.begin(), channel.times.end())},
          {"values", std::vector<double>(channel.values.begin(), channel.values.end())}});
   }
@@ -80,7 +84,9 @@ class Explore : public Command {
 
   ExitStatus run(const CommandContext& context) override {
     check(context);
-    OutputFolder folder(context, {});
+    std::vector<std::string> written;
+    if (!verdict_.empty()) written.push_back(withoutName);
+    OutputFolder folder(context, std::move(written));
     Summary summary(context);
     models_.reserve(3);  // addresses stay
     models_.push_back(asGiven(summary));
@@ -94,7 +100,7 @@ class Explore : public Command {
     }
     inputsMustDiffer(summary, trials_.size());
     std::optional<EarlierVerdict> verdict;
-    if (!verdict_.empty()) verdict = addVerdict(summary);
+    if (!verdict_.empty()) verdict = addVerdict(system, summary, folder);
 
     const PageParameters parameters = pageParameters(
         {models_, system, inputs, systemOptions(simulation_), names_, noise_, verdict});
@@ -148,7 +154,8 @@ class Explore : public Command {
   }
 
   /// The fitted model with and without the effect; the one as given is for comparison.
-  EarlierVerdict addVerdict(Summary& summary) {
+  EarlierVerdict addVerdict(const bio::MusculoskeletalSystem& system, Summary& summary,
+                            OutputFolder& folder) {
     EarlierVerdict verdict = readVerdict(verdict_);
     models_.front().isShown = false;
     ExploredModel with;
@@ -157,16 +164,18 @@ class Explore : public Command {
     with.text = documentOf(with.file, with.model);
     with.label = verdict.effects.empty() ? "refitted" : "with " + verdict.effects;
     for (const std::string& trial : trials_) {
-      const auto found = verdict.replayed.find(trial);
-      with.trials.push_back(found == verdict.replayed.end() ? trial : found->second);
+      with.trials.push_back(verdict.replayedFor(trial));
+      if (with.trials.back() != trial) summary.addInput(with.trials.back());
     }
     if (!verdict.effects.empty()) {
       ExploredModel without;
-      without.model = refitted(models_.front(), verdict);
-      without.file = "without_effect.osim";
+      without.model = refitted(models_.front().model, system, verdict);
+      without.model.fitted = with.model.fitted;
+      without.file = folder.path(withoutName).string();
       without.label = "without it, all else as fitted";
-      without.text = documentWith(model_, without.model);
+      without.text = bio::rewrittenOsim(model_, without.model, without.file);
       without.trials = trials_;
+      folder.write(withoutName, [&](std::ostream& out) { out << without.text; });
       models_.push_back(std::move(without));
     }
     models_.push_back(std::move(with));
@@ -174,10 +183,9 @@ class Explore : public Command {
   }
 
   /// The model as given with the fitted numbers that it has.
-  bio::Model refitted(const ExploredModel& given, const EarlierVerdict& verdict) const {
-    const bio::MusculoskeletalSystem system(given.model, systemOptions(simulation_));
-    const bio::ParameterCatalogue catalogue(given.model, system,
-                                            {system.skeleton().defaultValues(), {}});
+  static bio::Model refitted(const bio::Model& given, const bio::MusculoskeletalSystem& system,
+                             const EarlierVerdict& verdict) {
+    const bio::ParameterCatalogue catalogue(given, system, {system.skeleton().defaultValues(), {}});
     std::vector<std::size_t> selection;
     std::vector<double> values;
     for (const EarlierVerdict::Fitted& fitted : verdict.fitted) {
@@ -192,8 +200,7 @@ class Explore : public Command {
   }
 
   /// What the worker loads of a model.
-  Json setupOf(const ExploredModel& model, const std::vector<TrialInput>& inputs,
-               const std::vector<std::string>& parameters) const {
+  Json setupOf(const ExploredModel& model, const std::vector<std::string>& parameters) const {
     const bio::SystemOptions system = systemOptions(simulation_);
     Json choice = Json::array();
     for (const std::string& name : system.skeleton.freeCoordinates)
@@ -208,8 +215,8 @@ class Explore : public Command {
       choice.push_back({"starts", start.name, start.value});
     if (simulation_.ignoreExtra) choice.push_back({"ignoreExtra", "", 0});
     Json trials = Json::array();
-    for (std::size_t i = 0; i < inputs.size(); ++i)
-      trials.push_back({{"file", model.trials[i]}, {"sha256", inputs[i].trial.sha256}});
+    for (const std::string& trial : model.trials)
+      trials.push_back({{"file", trial}, {"sha256", sha256OfFile(trial)}});
     return {{"model", model.file},
             {"trials", trials},
             {"choice", choice},
@@ -217,21 +224,13 @@ class Explore : public Command {
             {"parameters", parameters}};
   }
 
-  /// Options of `replay` that the page's command line needs.
+  /// Options of `replay` that the page's command line needs, beside those that the page changes.
   std::string optionText() const {
-    std::string text;
-    const auto add = [&](const char* option, const std::string& value) {
-      text += fmt::format(" {} {}", option, shellWord(value));
-    };
-    if (!simulation_.areChosen)
-      for (const std::string& name : simulation_.coordinates) add("--coordinate", name);
-    for (const std::string& name : simulation_.prescribed) add("--prescribe", name);
-    for (const Assignment& lock : simulation_.locks)
-      add("--lock", fmt::format("{}={}", lock.name, lock.value));
-    for (const std::string& name : simulation_.wrapAsCylinder) add("--wrap-as-cylinder", name);
+    SimulationOptions options = simulation_;
+    options.integrator = SimulationOptions().integrator;
+    std::string text = typedOptions(options, false);
     for (const Assignment& start : simulation_.initial)
-      add("--initial", fmt::format("{}={}", start.name, start.value));
-    if (simulation_.ignoreExtra) text += " --ignore-extra";
+      text += " --initial " + shellWord(fmt::format("{}={}", start.name, start.value));
     return text;
   }
 
@@ -242,7 +241,8 @@ class Explore : public Command {
     for (std::size_t m = 0; m < models_.size(); ++m) {
       const ExploredModel& one = models_[m];
       files[one.file] = one.text;
-      for (const std::string& trial : one.trials) files[trial] = fileText(trial);
+      for (const std::string& trial : one.trials)
+        if (!files.contains(trial)) files[trial] = fileText(trial);
       Json indices = Json::array(), values = Json::array();
       std::vector<std::string> names;
       for (std::size_t i = 0; i < parameters.list.size(); ++i) {
@@ -257,7 +257,7 @@ class Explore : public Command {
                         {"isShown", one.isShown},
                         {"parameters", indices},
                         {"values", values},
-                        {"setup", setupOf(one, inputs, names)}});
+                        {"setup", setupOf(one, names)}});
     }
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       const bio::Trial& trial = inputs[i].trial;

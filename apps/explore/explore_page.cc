@@ -1,12 +1,7 @@
 #include "explore/explore_page.h"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 #include <openssl/sha.h>
-
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "explore_assets.h"
 #include "info/version.h"
@@ -19,30 +14,10 @@ namespace {
 
 /// For Content-Security-Policy: 'sha256-…' of a script.
 std::string hashSource(const std::string& script) {
-  unsigned char hash[SHA256_DIGEST_LENGTH];
-  SHA256(reinterpret_cast<const unsigned char*>(script.data()), script.size(), hash);
-  std::string text(4 * ((sizeof hash + 2) / 3) + 1, '\0');
-  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), hash,
-                                     static_cast<int>(sizeof hash));
-  text.resize(static_cast<std::size_t>(length));
-  return fmt::format("'sha256-{}'", text);
-}
-
-/// The template with {{name}} replaced; what is put in is not searched again.
-std::string filledPage(std::string_view pattern,
-                       const std::vector<std::pair<std::string, std::string>>& values) {
-  std::string text;
-  while (true) {
-    const std::size_t open = pattern.find("{{");
-    text += pattern.substr(0, open);
-    if (open == pattern.npos) return text;
-    const std::size_t close = pattern.find("}}", open);
-    const std::string_view name = pattern.substr(open + 2, close - open - 2);
-    for (const auto& [key, value] : values) {
-      if (key == name) text += value;
-    }
-    pattern.remove_prefix(close + 2);
-  }
+  std::string hash(SHA256_DIGEST_LENGTH, '\0');
+  SHA256(reinterpret_cast<const unsigned char*>(script.data()), script.size(),
+         reinterpret_cast<unsigned char*>(hash.data()));
+  return fmt::format("'sha256-{}'", base64(hash));
 }
 
 std::string about(const Summary& summary) {
@@ -75,19 +50,18 @@ std::string explorePage(const std::string& title, const std::string& verdict,
       "default-src 'none'; script-src {} {} 'wasm-unsafe-eval' blob:; worker-src blob:; "
       "style-src 'unsafe-inline'; img-src data: blob:",
       hashSource(libraries), hashSource(scripts));
-  return filledPage(
-      assets::pageHtml,
-      {{"policy", policy},
-       {"title", htmlText(title)},
-       {"licences", fmt::format("{}\n{}", assets::threeLicence, assets::uplotLicence)},
-       {"styles", fmt::format("{}\n{}", assets::uplotCss, assets::pageCss)},
-       {"verdict", htmlText(verdict)},
-       {"about", about(summary)},
-       {"data", scriptText(data)},
-       {"core", std::string(assets::liveCore)},
-       {"worker", fmt::format("{}\n{}", assets::coreJs, assets::workerJs)},
-       {"libraries", libraries},
-       {"scripts", scripts}});
+  return filled(assets::pageHtml,
+                {{"policy", policy},
+                 {"title", htmlText(title)},
+                 {"licences", fmt::format("{}\n{}", assets::threeLicence, assets::uplotLicence)},
+                 {"styles", fmt::format("{}\n{}", assets::uplotCss, assets::pageCss)},
+                 {"verdict", htmlText(verdict)},
+                 {"about", about(summary)},
+                 {"data", scriptText(data)},
+                 {"core", std::string(assets::liveCore)},
+                 {"worker", fmt::format("{}\n{}", assets::coreJs, assets::workerJs)},
+                 {"libraries", libraries},
+                 {"scripts", scripts}});
 }
 
 }  // namespace app

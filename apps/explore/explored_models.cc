@@ -1,7 +1,6 @@
 #include "explore/explored_models.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <sstream>
@@ -11,29 +10,7 @@
 #include "bio/tables/file_error.h"
 
 namespace app {
-namespace {
-
 namespace fs = std::filesystem;
-
-/// What a function writes to a file, as text.
-template <class F>
-std::string written(F&& write) {
-  std::string name = (fs::temp_directory_path() / "fisherhill-XXXXXX.osim").string();
-  const int handle = mkstemps(name.data(), 5);
-  if (handle < 0) throw std::runtime_error("a temporary file cannot be created");
-  close(handle);
-  struct Removal {
-    const std::string& name;
-    ~Removal() {
-      std::error_code ignored;
-      fs::remove(name, ignored);
-    }
-  } const removal{name};
-  write(fs::path(name));
-  return fileText(name);
-}
-
-}  // namespace
 
 std::string fileText(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -45,11 +22,15 @@ std::string fileText(const fs::path& file) {
 
 std::string documentOf(const std::string& file, const bio::Model& model) {
   if (bio::modelFormat(file) == bio::ModelFormat::openSim) return fileText(file);
-  return documentWith(file, model);
+  return bio::rewrittenOsim(file, model, file);
 }
 
-std::string documentWith(const std::string& file, const bio::Model& model) {
-  return written([&](const fs::path& path) { bio::rewriteOsim(file, model, path); });
+std::string EarlierVerdict::replayedFor(const std::string& trial) const {
+  for (const auto& [recorded, driven] : replayed) {
+    std::error_code isElsewhere;
+    if (recorded == trial || fs::equivalent(recorded, trial, isElsewhere)) return driven;
+  }
+  return trial;
 }
 
 EarlierVerdict readVerdict(const fs::path& folder) {
@@ -72,8 +53,10 @@ EarlierVerdict readVerdict(const fs::path& folder) {
       verdict.effects += effect.at("name").get<std::string>();
     }
     for (const auto& trial : json.at("trials")) {
-      verdict.replayed[trial.at("file").get<std::string>()] =
-          trial.at("replay_file").get<std::string>();
+      const std::string recorded = trial.at("file").get<std::string>();
+      const fs::path driven = trial.at("replay_file").get<std::string>();
+      // a corrected recording is beside the verdict, wherever that is now
+      if (driven != recorded) verdict.replayed[recorded] = folder / driven.filename();
     }
     for (const auto& one : json.at("fitted_parameters")) {
       const double sd = one.at("sd").is_number() ? one["sd"].get<double>() : 0;

@@ -28,6 +28,8 @@ struct EarlierVerdict {
   std::string effects;  ///< names, "viscous joint damping and …"; empty: none
   std::filesystem::path model;
   std::map<std::string, std::string> replayed;  ///< by trial: the file that the model replays
+  /// A trial that the verdict does not know is replayed as it is.
+  std::string replayedFor(const std::string& trial) const;
   struct Fitted {
     std::string name;
     double nominal, estimate, sd;
@@ -45,8 +47,5 @@ std::string fileText(const std::filesystem::path& file);
 /// The document of a file as the page carries it: as it is, or translated if it is a robot
 /// description.
 std::string documentOf(const std::string& file, const bio::Model& model);
-
-/// The document of `file` with numbers of `model`.
-std::string documentWith(const std::string& file, const bio::Model& model);
 
 }  // namespace app

@@ -11,18 +11,13 @@
 #include "bio/opensim/osim_file.h"
 #include "bio/path/posture_samples.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
+#include "info/dynamics/linear_table.h"
 #include "view/system_shape.h"
 
 namespace app {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-/// Every trajectory has two rows at least.
-std::size_t rowBefore(const std::vector<double>& times, double time) {
-  const auto behind = std::upper_bound(times.begin() + 1, times.end() - 1, time);
-  return static_cast<std::size_t>(behind - times.begin()) - 1;
-}
 
 bool hasPath(const bio::MusculoskeletalSystem& system, const std::string& muscle) {
   return std::any_of(system.muscles().begin(), system.muscles().end(),
@@ -148,23 +143,22 @@ std::vector<std::string> LiveModel::paths() const {
   return names;
 }
 
-Eigen::VectorXd LiveModel::between(const Eigen::MatrixXd& values, double time) const {
-  if (motion_.time.size() < 2) return values.col(0);
-  const std::size_t row = rowBefore(motion_.time, time);
-  const double first = motion_.time[row], last = motion_.time[row + 1];
-  const double w = std::clamp((time - first) / (last - first), 0.0, 1.0);
-  const auto k = static_cast<Eigen::Index>(row);
-  return (1 - w) * values.col(k) + w * values.col(k + 1);
+Eigen::VectorXd LiveModel::postureAt(double time) const {
+  std::vector<bio::ObservedSeries> coordinates;
+  for (const bio::Coordinate& one : system_->skeleton().coordinates())
+    coordinates.push_back({bio::ofCoordinate(one.name), Eigen::VectorXd::Constant(1, time)});
+  return bio::ObservedMotion(*system_, std::move(coordinates)).values(motion_);
 }
 
 void LiveModel::drawMuscles(double time, const Eigen::VectorXd& q, Drawing& drawing) const {
   const std::size_t n = system_->numMuscles();
+  const info::LinearWeights at = info::linearAt(motion_.time, time);
   bio::Trajectory moment;
   moment.time = {time};
   moment.q = q;
-  moment.qDot = between(motion_.qDot, time);
-  moment.activation = between(motion_.activation, time);
-  moment.fibreLength = between(motion_.fibreLength, time);
+  moment.qDot = at.rows(motion_.qDot.transpose()).transpose();
+  moment.activation = at.rows(motion_.activation.transpose()).transpose();
+  moment.fibreLength = at.rows(motion_.fibreLength.transpose()).transpose();
   const bio::MuscleReport report = bio::reportMuscles(*system_, moment);
   for (std::size_t i = 0; i < drawing.paths.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -175,23 +169,13 @@ void LiveModel::drawMuscles(double time, const Eigen::VectorXd& q, Drawing& draw
 
 LiveModel::Drawing LiveModel::drawingAt(double time) const {
   if (!system_) throw std::logic_error("drawingAt: nothing has been simulated");
-  const bio::Skeleton& skeleton = system_->skeleton();
-  Eigen::VectorXd q(skeleton.numCoordinates());
   time = std::clamp(time, motion_.time.front(), motion_.time.back());
-  if (motion_.time.size() < 2) {
-    q = motion_.q.col(0);
-  } else {
-    const std::size_t row = rowBefore(motion_.time, time);
-    const auto k = static_cast<Eigen::Index>(row);
-    const double h = motion_.time[row + 1] - motion_.time[row];
-    const double s = (time - motion_.time[row]) / h, r = 1 - s;
-    q = r * r * (1 + 2 * s) * motion_.q.col(k) + s * s * (1 + 2 * r) * motion_.q.col(k + 1) +
-        h * s * r * (r * motion_.qDot.col(k) - s * motion_.qDot.col(k + 1));
-  }
+  const Eigen::VectorXd q = postureAt(time);
   std::vector<const bio::MusclePath*> paths;
   for (std::size_t i = 0; i < system_->numPaths(); ++i) paths.push_back(&system_->path(i));
   for (const bio::MusclePath& path : still_) paths.push_back(&path);
-  const bio::view::PlacedPaths placed = bio::view::placedPaths(skeleton, bodies_, paths, q);
+  const bio::view::PlacedPaths placed =
+      bio::view::placedPaths(system_->skeleton(), bodies_, paths, q);
   Drawing drawing;
   drawing.bodies = placed.bodies;
   for (const std::vector<Eigen::Vector3d>& line : placed.lines)

@@ -90,8 +90,7 @@ class LiveModel {
     std::vector<std::size_t> selection = {};  ///< of its catalogue, in the order of names_
     std::vector<Eigen::Index> given = {};     ///< which of the values those are
   };
-  /// Each column of values at a time, between rows.
-  Eigen::VectorXd between(const Eigen::MatrixXd& values, double time) const;
+  Eigen::VectorXd postureAt(double time) const;
   void drawMuscles(double time, const Eigen::VectorXd& q, Drawing& drawing) const;
 
   bio::Model model_;

@@ -134,20 +134,10 @@ void addInformation(const ParameterQuestion& question, const StudiedModel& shown
   }
   const bio::ParameterInformation information =
       bio::localSensitivity(shown.trials, asked).information;
-  Eigen::MatrixXd precision = information.fisher;
-  for (std::size_t i = 0; i < selection.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    precision(k, k) += std::pow(catalogue.parameters()[selection[i]].sd, -2);
-  }
-  // scaled to a unit diagonal first: units differ by many powers of ten
-  const Eigen::VectorXd scale = precision.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = scale.asDiagonal() * precision * scale.asDiagonal();
-  page.covariance = scale.asDiagonal() *
-                    scaled.llt().solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols())) *
-                    scale.asDiagonal();
+  page.covariance = information.boundJoint.asDiagonal() * information.correlation *
+                    information.boundJoint.asDiagonal();
   for (PageParameter& one : page.list) {
-    if (one.covarianceRow >= 0)
-      one.sd = std::sqrt(page.covariance(one.covarianceRow, one.covarianceRow));
+    if (one.covarianceRow >= 0) one.sd = information.boundJoint[one.covarianceRow];
   }
   std::string what;
   for (const bio::ChannelCandidate& channel : asked.observed)

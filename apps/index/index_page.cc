@@ -60,9 +60,7 @@ std::string indexData(const FoundResults& found) {
     list.push_back(
         {{"folder", result.folder}, {"sentence", result.sentence}, {"numbers", numbers}});
   }
-  std::string text;
-  for (const char c : jsonText(list)) text += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return text;
+  return scriptText(list);
 }
 
 }  // namespace

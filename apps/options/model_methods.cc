@@ -64,8 +64,8 @@ void sayExcitations(const bio::MusculoskeletalSystem& system, Methods& methods) 
   methods.say(
       Methods::Part::data,
       "Recorded excitations, linear between samples, drive the muscles; unless model or trial give "
-      "an "
-      "initial state, activations begin at the first excitation and fibres in static equilibrium.");
+      "an initial state, activations begin at the first excitation and fibres in static "
+      "equilibrium.");
   methods.assume(
       "The excitations are those that the muscles received: EMG, its normalisation and its mapping "
       "to muscles are taken as exact unless a parameter or an effect says otherwise.");

@@ -35,7 +35,7 @@ double parseAngle(std::string_view text) {
     return unit * parseNumber(number);
   } catch (const std::invalid_argument&) {
     throw std::invalid_argument(
-        fmt::format("'{}' is not an angle: write 34deg, or 0.59 for radians", text));
+        fmt::format("'{}' is not a finite number, nor an angle such as 34deg", text));
   }
 }
 

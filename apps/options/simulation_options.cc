@@ -4,12 +4,15 @@
 
 #include "bio/simulation/integrator_names.h"
 #include "options/number_rules.h"
+#include "output/text.h"
 
 namespace app {
 namespace {
 
 const std::string modelGroup = "Model";
 const std::string simulationGroup = "Simulation";
+
+}  // namespace
 
 CLI::Option* addAssignments(CLI::App& subcommand, const std::string& name,
                             std::vector<Assignment>& target, const std::string& description) {
@@ -30,14 +33,30 @@ CLI::Option* addAssignments(CLI::App& subcommand, const std::string& name,
       ->allow_extra_args(false);
 }
 
-}  // namespace
-
 double SimulationOptions::stepOrDefault() const {
   return step.value_or(bio::defaultStep(bio::integratorNamed(integrator).value()));
 }
 
 bool SimulationOptions::isVariational() const {
   return bio::isVariational(bio::integratorNamed(integrator).value());
+}
+
+std::string typedOptions(const SimulationOptions& options, bool withStep) {
+  std::string text;
+  if (!options.areChosen)
+    for (const std::string& name : options.coordinates) text += " --coordinate " + shellWord(name);
+  for (const std::string& name : options.prescribed) text += " --prescribe " + shellWord(name);
+  if (options.prescribeCutoff)
+    text += fmt::format(" --prescribe-cutoff {}", *options.prescribeCutoff);
+  for (const Assignment& lock : options.locks)
+    text += " --lock " + shellWord(fmt::format("{}={}", lock.name, lock.value));
+  for (const std::string& name : options.wrapAsCylinder)
+    text += " --wrap-as-cylinder " + shellWord(name);
+  if (options.integrator != SimulationOptions().integrator)
+    text += " --integrator " + options.integrator;
+  if (options.ignoreExtra) text += " --ignore-extra";
+  if (withStep && options.step) text += fmt::format(" --step {}", *options.step);
+  return text;
 }
 
 nlohmann::ordered_json settingsOf(const SimulationOptions& options) {

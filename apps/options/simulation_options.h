@@ -43,6 +43,15 @@ void addSimulationOptions(CLI::App& subcommand, SimulationOptions& options);
 /// trial.
 void addPrescribing(CLI::App& subcommand, SimulationOptions& options);
 
+/// Adds an option that takes NAME=VALUE and may be repeated.
+CLI::Option* addAssignments(CLI::App& subcommand, const std::string& name,
+                            std::vector<Assignment>& target, const std::string& description);
+
+/// The options that say what is simulated, as words of another command: " --coordinate knee …".
+/// Starts are not among them.
+/// @param withStep  whether --step is
+std::string typedOptions(const SimulationOptions& options, bool withStep);
+
 /// All of them as one JSON object, to compare with another run.
 nlohmann::ordered_json settingsOf(const SimulationOptions& options);
 

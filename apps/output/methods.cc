@@ -24,8 +24,7 @@ PublicationText textOf(Publication publication) {
           "De Groote et al., 2016",
           "F. De Groote, A. L. Kinney, A. V. Rao, B. J. Fregly, Evaluation of direct collocation "
           "optimal control problem formulations for solving the muscle redundancy problem, Annals "
-          "of "
-          "Biomedical Engineering 44, 2016."};
+          "of Biomedical Engineering 44, 2016."};
     case Publication::hindmarsh2005:
       return {
           "Hindmarsh et al., 2005",
@@ -35,13 +34,11 @@ PublicationText textOf(Publication publication) {
     case Publication::kassRaftery1995:
       return {"Kass and Raftery, 1995",
               "R. E. Kass, A. E. Raftery, Bayes factors, Journal of the American Statistical "
-              "Association "
-              "90, 1995."};
+              "Association 90, 1995."};
     case Publication::ljungBox1978:
       return {"Ljung and Box, 1978",
               "G. M. Ljung, G. E. P. Box, On a measure of lack of fit in time series models, "
-              "Biometrika 65, "
-              "1978."};
+              "Biometrika 65, 1978."};
     case Publication::macKay1992:
       return {"MacKay, 1992",
               "D. J. C. MacKay, Bayesian interpolation, Neural Computation 4, 1992."};
@@ -67,8 +64,7 @@ PublicationText textOf(Publication publication) {
     case Publication::wilson:
       return {"Wilson, thesis",
               "A. D. Wilson, Information-based Trajectory Optimization for Active Estimation in "
-              "Mechanical "
-              "Systems, PhD thesis."};
+              "Mechanical Systems, PhD thesis."};
   }
   return {"", ""};
 }

@@ -30,13 +30,13 @@ void Summary::setSimulation(const std::string& integrator, double step, double d
     methods_.say(Methods::Part::simulation, sentence, {source});
   };
   if (integrator == "vi" || integrator == "vi-left") {
-    say(fmt::format("Motions are simulated by a midpoint variational integrator ({}){} with a "
-                    "fixed step{}; "
-                    "the states of the muscles are solved implicitly within each step.",
-                    citation(Publication::wilson),
-                    integrator == "vi" ? ", the forces shared by both ends of a step,"
-                                       : ", the forces at the beginning of a step,",
-                    every),
+    say(fmt::format(
+            "Motions are simulated by a midpoint variational integrator ({}){} with a "
+            "fixed step{}; the states of the muscles are solved implicitly within each step.",
+            citation(Publication::wilson),
+            integrator == "vi" ? ", the forces shared by both ends of a step,"
+                               : ", the forces at the beginning of a step,",
+            every),
         Publication::wilson);
   } else if (integrator == "cvode") {
     say(fmt::format("Motions are simulated by CVODE ({}) with a variable step, its values taken at "

@@ -1,6 +1,7 @@
 #include "output/text.h"
 
 #include <fmt/format.h>
+#include <openssl/evp.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -92,6 +93,36 @@ std::string shellWord(const std::string& word) {
 
 std::string unitText(const std::string& unit) {
   return unit == "N·m" ? "N m" : unit.empty() ? "1" : unit;
+}
+
+bio::ShownUnit shownUnit(const std::string& unit) {
+  if (!unit.starts_with("rad")) return {1, unitText(unit)};
+  return {bio::degreesPerRadian, "deg" + unit.substr(3)};
+}
+
+std::string base64(const std::string& bytes) {
+  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
+  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                                     reinterpret_cast<const unsigned char*>(bytes.data()),
+                                     static_cast<int>(bytes.size()));
+  text.resize(static_cast<std::size_t>(length));
+  return text;
+}
+
+std::string filled(std::string_view text,
+                   const std::vector<std::pair<std::string, std::string>>& values) {
+  std::string result;
+  while (true) {
+    const std::size_t open = text.find("{{");
+    result += text.substr(0, open);
+    if (open == text.npos) return result;
+    const std::size_t close = text.find("}}", open);
+    const std::string_view name = text.substr(open + 2, close - open - 2);
+    for (const auto& [key, value] : values) {
+      if (key == name) result += value;
+    }
+    text.remove_prefix(close + 2);
+  }
 }
 
 }  // namespace app

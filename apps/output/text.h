@@ -3,6 +3,10 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bio/model/units.h"
 
 /// How the program writes text: one-line messages, numbers for people, escapes for HTML.
 namespace app {
@@ -36,5 +40,16 @@ std::string htmlText(std::string_view text);
 
 /// A unit as figures and sentences show it: "N m" for "N·m", "1" for none.
 std::string unitText(const std::string& unit);
+
+/// Angles are shown in degrees, everything else in its unit.
+bio::ShownUnit shownUnit(const std::string& unit);
+
+/// The bytes in base 64, on one line.
+std::string base64(const std::string& bytes);
+
+/// The text with each {{name}} replaced by the value of that name, nothing if there is none; what
+/// is put in is not searched again.
+std::string filled(std::string_view text,
+                   const std::vector<std::pair<std::string, std::string>>& values);
 
 }  // namespace app

@@ -8,7 +8,6 @@
 #include "bio/opensim/osim_file.h"
 #include "command/command.h"
 #include "options/model_methods.h"
-#include "options/quantity.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
@@ -19,22 +18,16 @@ namespace app {
 namespace {
 
 /// The model, mapping and start with the values of --set.
-bio::ParameterCatalogue::Setting settingOf(const std::vector<std::string>& typed,
+bio::ParameterCatalogue::Setting settingOf(const std::vector<Assignment>& typed,
                                            const bio::ParameterCatalogue& catalogue) {
   std::vector<std::size_t> selection;
   Eigen::VectorXd values(static_cast<Eigen::Index>(typed.size()));
-  for (std::size_t i = 0; i < typed.size(); ++i) {
-    const std::size_t equals = typed[i].find('=');
-    if (equals == std::string::npos) {
-      throw std::invalid_argument(fmt::format("--set {}: must be NAME=VALUE", typed[i]));
-    }
-    const std::size_t index = catalogue.find(typed[i].substr(0, equals));
-    if (std::find(selection.begin(), selection.end(), index) != selection.end()) {
-      throw std::invalid_argument(
-          fmt::format("--set: '{}' is given twice", catalogue.parameters()[index].name));
-    }
+  for (const Assignment& one : typed) {
+    const std::size_t index = catalogue.find(one.name);
+    if (std::find(selection.begin(), selection.end(), index) != selection.end())
+      throw std::invalid_argument(fmt::format("--set: '{}' is given twice", one.name));
+    values[static_cast<Eigen::Index>(selection.size())] = one.value;
     selection.push_back(index);
-    values[static_cast<Eigen::Index>(i)] = parseNumber(typed[i].substr(equals + 1));
   }
   return catalogue.at(selection, values);
 }
@@ -57,12 +50,10 @@ class Replay : public Command {
         "--reactions", reactions_,
         "also the reactions at all locked coordinates, as NAME.reaction in forces.sto; "
         "without it, at those with a column NAME.moment");
-    options
-        .add_option("--set", set_,
-                    "another value of a parameter, in its unit, as TRI.radius=0.018; may be "
-                    "repeated; `sensitivity MODEL --list-parameters` lists them")
-        ->type_name("NAME=VALUE")
-        ->allow_extra_args(false);
+    addAssignments(options, "--set", set_,
+                   "another value of a parameter, in its unit (an angle also as 34deg), as "
+                   "TRI.radius=0.018; may be repeated; `sensitivity MODEL --list-parameters` lists "
+                   "them");
     options.add_flag("--strict", strict_,
                      "exit with status 1 if a coordinate leaves its range by more than a tenth of "
                      "it, or a fibre leaves 0.2 to 2 optimal lengths");
@@ -144,9 +135,9 @@ class Replay : public Command {
   std::string model_;
   std::string trial_;
   SimulationOptions simulation_;
-  std::string muscleClass_;    ///< empty: as in the model
-  std::string externalLoads_;  ///< empty: none
-  std::vector<std::string> set_;
+  std::string muscleClass_;      ///< empty: as in the model
+  std::string externalLoads_;    ///< empty: none
+  std::vector<Assignment> set_;  ///< other values of parameters
   bool reactions_ = false;
   bool strict_ = false;
 };

@@ -1,7 +1,6 @@
 #include "report/report.h"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
 #include <cmath>
 #include <ctime>
@@ -83,15 +82,6 @@ std::string html(const Figure& figure) {
   const std::string caption = captionOf(figure, drawn);
   if (!caption.empty()) text += fmt::format("<figcaption>{}</figcaption>\n", htmlText(caption));
   return text + "</figure>\n";
-}
-
-std::string base64(const std::string& bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const int length = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                                     reinterpret_cast<const unsigned char*>(bytes.data()),
-                                     static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(length));
-  return text;
 }
 
 std::string html(const Picture& picture) {

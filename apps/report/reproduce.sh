@@ -7,13 +7,13 @@ set -eu
 # SHA-256 of the inputs; their paths are as seen from the folder in which the command ran.
 inputs() {
   cat <<'END_OF_INPUTS'
-@INPUTS@END_OF_INPUTS
+{{inputs}}END_OF_INPUTS
 }
-version=@VERSION@
-then_in=@THEN_IN@       # that folder as it was called
-back=@BACK@             # the way to it from here
+version={{version}}
+then_in={{then_in}}       # that folder as it was called
+back={{back}}             # the way to it from here
 run() {
-  "$program"@COMMAND@
+  "$program"{{command}}
 }
 
 here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd -P)

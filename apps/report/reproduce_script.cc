@@ -56,20 +56,6 @@ std::string quoted(const std::string& text) {
   return word.starts_with('\'') ? word : "'" + word + "'";
 }
 
-/// The text with what stands for a placeholder in its place, each once.
-std::string filled(std::string_view text,
-                   const std::vector<std::pair<std::string, std::string>>& values) {
-  std::string result;
-  std::size_t from = 0;
-  for (const auto& [placeholder, value] : values) {  // in the order of the text
-    const std::size_t at = text.find(placeholder, from);
-    result += text.substr(from, at - from);
-    result += value;
-    from = at + placeholder.size();
-  }
-  return result.append(text.substr(from));
-}
-
 }  // namespace
 
 std::string reproduceScript(const CommandContext& context, const Summary& summary) {
@@ -81,11 +67,11 @@ std::string reproduceScript(const CommandContext& context, const Summary& summar
   std::error_code failed;
   const std::string back = fs::relative(here, fs::canonical(*context.out, failed), failed).string();
   return filled(assets::reproduceSh,
-                {{"@INPUTS@", inputs},
-                 {"@VERSION@", quoted(fmt::format("fisherhill {}", info::version()))},
-                 {"@THEN_IN@", quoted(here.string())},
-                 {"@BACK@", quoted(back.empty() ? "." : back)},
-                 {"@COMMAND@", repeated.command}});
+                {{"inputs", inputs},
+                 {"version", quoted(fmt::format("fisherhill {}", info::version()))},
+                 {"then_in", quoted(here.string())},
+                 {"back", quoted(back.empty() ? "." : back)},
+                 {"command", repeated.command}});
 }
 
 }  // namespace app

@@ -199,8 +199,7 @@ Mesh meshFromFiles(const BodyShape& body, const std::filesystem::path& folder,
                    std::vector<std::string>& unusable) {
   vtkObject::GlobalWarningDisplayOff();  // a library does not print
   std::vector<Mesh> meshes;
-  for (std::size_t i = 0; i < body.geometryFiles.size(); ++i) {
-    const std::string& name = body.geometryFiles[i];
+  for (const auto& [name, scale] : body.geometry) {
     const std::filesystem::path file = folder / std::filesystem::path(name).filename();
     vtkNew<vtkXMLPolyDataReader> reader;
     if (std::filesystem::is_regular_file(file) && reader->CanReadFile(file.c_str())) {
@@ -213,10 +212,10 @@ Mesh meshFromFiles(const BodyShape& body, const std::filesystem::path& folder,
     }
     reader->GetOutput()->GetPointData()->SetScalars(nullptr);
     vtkPoints* points = reader->GetOutput()->GetPoints();
-    for (vtkIdType k = 0; i < body.geometryScales.size() && k < points->GetNumberOfPoints(); ++k) {
+    for (vtkIdType k = 0; k < points->GetNumberOfPoints(); ++k) {
       Eigen::Vector3d point;
       points->GetPoint(k, point.data());
-      point = point.cwiseProduct(body.geometryScales[i]);
+      point = point.cwiseProduct(scale);
       points->SetPoint(k, point.data());
     }
     meshes.push_back(withNormals(reader->GetOutput(), 60));

@@ -72,7 +72,7 @@ bool sameBones(const BodyShape& a, const BodyShape& b) {
   const auto same = [](const TaperedBone& bone, const TaperedBone& other) {
     return bone.from == other.from && bone.to == other.to && bone.shaftRadius == other.shaftRadius;
   };
-  return a.geometryFiles == b.geometryFiles && a.geometryScales == b.geometryScales &&
+  return a.geometry == b.geometry &&
          std::equal(a.bones.begin(), a.bones.end(), b.bones.begin(), b.bones.end(), same);
 }
 

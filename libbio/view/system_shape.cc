@@ -101,8 +101,7 @@ std::vector<BodyShape> bodyShapes(const Model& model) {
   for (const Body& body : model.bodies) {
     BodyShape shape;
     shape.name = body.name;
-    shape.geometryFiles = body.geometryFiles;
-    shape.geometryScales = body.geometryScales;
+    shape.geometry = body.geometry;
     shape.bones = bonesOf(model, body);
     for (const Joint& joint : model.joints) {
       if (joint.childBody != body.name || joint.kind == JointKind::weld || shape.bones.empty()) {

@@ -24,8 +24,7 @@ struct TaperedBone {
 /// Shapes of one body in a picture.
 struct BodyShape {
   std::string name;
-  std::vector<std::string> geometryFiles;            ///< .vtp names of the model
-  std::vector<Eigen::Vector3d> geometryScales = {};  ///< of each, along x, y and z; empty: 1
+  std::vector<BodyGeometry> geometry;
   std::vector<TaperedBone> bones;
   std::vector<std::pair<Eigen::Vector3d, double>> joints;  ///< centres [m, body frame], radii [m]
   std::vector<WrapObject> wraps;

@@ -128,8 +128,7 @@ TEST(SharedModel, BothFormatsAreReadAsTheSameArm) {
     EXPECT_EQ(body.massCenter, same.massCenter);
     // OpenSim rounds inertias to six digits.
     for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(body.inertia[i], same.inertia[i], 1e-7);
-    EXPECT_EQ(body.geometryFiles, same.geometryFiles) << body.name;
-    EXPECT_EQ(body.geometryScales, same.geometryScales) << body.name;
+    EXPECT_EQ(body.geometry, same.geometry) << body.name;
   }
   for (const WrapObject& wrap : four.wrapObjects) {
     if (wrap.name == "BIC_BRD") continue;

@@ -2,7 +2,7 @@
 // The simulation core (webassembly/live_exports.cc) as an object; in the page's worker, and in tests.
 
 const Role = { free: 0, locked: 1, prescribed: 2, held: 3, cylinder: 4, starts: 5, ignoreExtra: 6 };
-const Series = { times: 0, coordinates: 1, speeds: 2, activations: 3, fibreLengths: 4, excitations: 5, forces: 6, measured: 7 };
+const Series = { times: 0, coordinates: 1, activations: 2, excitations: 3, measured: 4 };
 const Names = { coordinates: 0, muscles: 1, bodies: 2, paths: 3 };
 
 class Core {

@@ -2,6 +2,7 @@
 // Measured and simulated curves, what is left between them, and what drives the muscles.
 
 const mostMuscles = 10;
+const mostPoints = 160;
 
 class Curves {
   constructor(data, colours) {
@@ -44,6 +45,14 @@ class Curves {
     });
   }
 
+  /// Indices of at most mostPoints values that are there.
+  thinned(values) {
+    const there = [];
+    values.forEach((value, i) => { if (value !== null && value !== undefined) there.push(i); });
+    const every = Math.ceil(there.length / mostPoints);
+    return there.filter((_, i) => i % every === 0);
+  }
+
   static rms(values) {
     const there = values.filter(v => v !== null);
     return Math.sqrt(there.reduce((sum, v) => sum + v * v, 0) / there.length);
@@ -63,8 +72,12 @@ class Curves {
     this.drawn = { channel, tables };
     this.motion.setData(uPlot.join(tables));
     this.showFit(state, trial, result, channel);
-    if (this.drive) {
+    // what drives the muscles seldom changes, and drawing it takes as long as a simulation
+    const same = this.driven && this.driven.length === result[this.inputs].length &&
+      this.driven.every((value, i) => value === result[this.inputs][i]);
+    if (this.drive && !same) {
       const count = result.names.muscles.length;
+      this.driven = result[this.inputs];
       this.drive.setData([Array.from(result.times), ...this.muscles.map(
         i => Array.from(result.times, (_, k) => result[this.inputs][k * count + i]))]);
     }
@@ -124,8 +137,10 @@ class Curves {
     const series = [{ label: "simulated", stroke: colour[0], width: 2.5 },
                     { label: "as given", stroke: colour[1], width: 1.5, dash: [6, 4] }];
     if (channel.measured >= 0) {
-      const points = { show: true, size: 4, width: 1, space: 0 };
-      series.push({ label: "measured", stroke: getComputedStyle(document.documentElement).getPropertyValue("--text"), width: 0, points });
+      // filled, not outlined, and no more than fit side by side: outlines take most of the time
+      const text = getComputedStyle(document.documentElement).getPropertyValue("--text");
+      const points = { show: true, size: 4, width: 0, stroke: text, fill: text, space: 0, filter: (u, i, show) => show ? this.thinned(u.data[i]) : null };
+      series.push({ label: "measured", stroke: text, width: 0, points });
     }
     this.motion = this.plot("motion", 260, `${channel.name} ${unit}`, series);
     document.getElementById("residual").hidden = channel.measured < 0;
@@ -141,6 +156,7 @@ class Curves {
     this.muscles = [...peaks.keys()].sort((a, b) => peaks[b] - peaks[a]).slice(0, mostMuscles).sort((a, b) => a - b);
     document.getElementById("drive").hidden = document.getElementById("inputs").parentNode.hidden = count === 0;
     const what = this.inputs === "excitations" ? "Excitation" : "Activation";
+    this.driven = null;
     this.drive = count === 0 ? null : this.plot("drive", 190, `${what} [1]`, this.muscles.map((i, k) => ({
       label: result.names.muscles[i], stroke: colour[k % colour.length], width: 1.5, dash: k < colour.length ? [] : [5, 3] })));
   }

@@ -100,7 +100,6 @@ function boneMesh(from, to, fromRadius, toRadius, shaftRadius, material) {
   const mesh = new THREE.Mesh(new THREE.LatheGeometry(outline, 18), material);
   mesh.position.copy(start);
   const direction = end.clone().sub(start).normalize();
-  mesh.applyMatrix4(new THREE.Matrix4());
   mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), direction);
   return mesh;
 }
@@ -142,7 +141,6 @@ class View {
     this.scene.add(this.muscleGroup);
     this.wrapsAreShown = false;
     this.shapes = new Float64Array();
-    this.largest = 1;
   }
 
   /// The numbers of Core.shapes().

@@ -33,7 +33,6 @@ function run({ model, trial, values, integrator, step, time }) {
 const answers = {
   load, run,
   draw: ({ model, time }) => ({ drawing: cores[model].drawing(time) }),
-  series: ({ model, what }) => ({ values: cores[model].series(what) }),
 };
 
 self.onmessage = async ({ data }) => {

@@ -200,21 +200,17 @@ const char* live_names(std::int32_t what) {
   });
 }
 
-/// Series of the last run, in numbers: 0 times, 1 coordinates, 2 speeds, 3 activations, 4 fibre
-/// lengths, 5 excitations, 6 tendon forces (columns are rows of time); 7 the measured channels, one
-/// after the other.
+/// Series of the last run, in numbers: 0 times, 1 coordinates, 2 activations, 3 excitations (all of
+/// one time together); 4 the measured channels, one after the other.
 const char* live_series(std::int32_t what) {
   return attempt([&] {
     numbers.clear();
     const bio::Trajectory& motion = live->motion();
     if (what == 0) numbers = motion.time;
     if (what == 1) addAll(motion.q);
-    if (what == 2) addAll(motion.qDot);
-    if (what == 3) addAll(motion.activation);
-    if (what == 4) addAll(motion.fibreLength);
-    if (what == 5) addAll(live->excitations());
-    if (what == 6) addAll(bio::reportMuscles(live->system(), motion).tendonForce);
-    if (what == 7)
+    if (what == 2) addAll(motion.activation);
+    if (what == 3) addAll(live->excitations());
+    if (what == 4)
       for (const Eigen::VectorXd& channel : live->measured()) addAll(channel);
   });
 }

@@ -160,8 +160,8 @@ void writeOsim(const Model& model, const std::filesystem::path& file) {
   writeTextFile(file, text);
 }
 
-void rewriteOsim(const std::filesystem::path& original, const Model& model,
-                 const std::filesystem::path& file) {
+std::string rewrittenOsim(const std::filesystem::path& original, const Model& model,
+                          const std::string& name) {
   const std::string text = readTextFile(original);
   tinyxml2::XMLDocument document, before, after;
   const bool isTranslated = parse(document, text, original.string()).isTranslated;
@@ -170,13 +170,17 @@ void rewriteOsim(const std::filesystem::path& original, const Model& model,
   osim::buildDocument(before, old, format);
   osim::buildDocument(after, model, format);
   if (osim::firstDifference(*before.RootElement(), *after.RootElement(), 0).empty()) {
-    writeTextFile(file, isTranslated ? print(document) : text);
-    return;
+    return isTranslated ? print(document) : text;
   }
   osim::applyChanges(*document.RootElement(), *before.RootElement(), *after.RootElement());
-  const std::string changed = print(document);
-  checkText(changed, after, format, file.string());
-  writeTextFile(file, changed);
+  std::string changed = print(document);
+  checkText(changed, after, format, name);
+  return changed;
+}
+
+void rewriteOsim(const std::filesystem::path& original, const Model& model,
+                 const std::filesystem::path& file) {
+  writeTextFile(file, rewrittenOsim(original, model, file.string()));
 }
 
 }  // namespace bio

@@ -44,8 +44,7 @@ void collectGeometry(const Source& source, const Element& element, const Eigen::
     if (tag == "mesh_file" || tag == "geometry_file") {
       const std::string file = trimmedText(child);
       if (file.empty()) continue;
-      body.geometryFiles.push_back(file);
-      body.geometryScales.push_back(scale.cwiseProduct(scaleOf(source, element)));
+      body.geometry.push_back({file, scale.cwiseProduct(scaleOf(source, element))});
     } else if (tag == "VisibleObject") {
       collectGeometry(source, *child, scale.cwiseProduct(scaleOf(source, *child)), body);
     } else if (tag != "Joint") {

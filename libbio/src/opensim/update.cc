@@ -92,10 +92,10 @@ class Updating {
       if (isList || child->FirstAttribute()) continue;
       const auto [before, isNew] = seen.emplace(child->Name(), child);
       if (isNew || trimmedText(before->second) == trimmedText(child)) continue;
-      fail(*child, fmt::format("is given twice in {}: '{}' in line {} and '{}' in line {}",
-                               label(element), trimmedText(before->second),
-                               before->second->GetLineNum(), trimmedText(child),
-                               child->GetLineNum()));
+      fail(*child,
+           fmt::format("is given twice in {}: '{}' in line {} and '{}' in line {}", label(element),
+                       trimmedText(before->second), before->second->GetLineNum(),
+                       trimmedText(child), child->GetLineNum()));
     }
   }
   void checkText(Element& element) {
@@ -363,9 +363,9 @@ class Updating {
       if (uses[name] < 2) continue;
       const std::string full = nameIn(*each.joint) + "/" + name;
       if (said.insert(name).second) {
-        remarks_.push_back(fmt::format(
-            "{} coordinates are called '{}'; they are called by joint and name, '{}'", uses[name],
-            name, full));
+        remarks_.push_back(
+            fmt::format("{} coordinates are called '{}'; they are called by joint and name, '{}'",
+                        uses[name], name, full));
       }
       each.coordinate->SetAttribute("name", full.c_str());
       Element* transform = each.joint->FirstChildElement("SpatialTransform");

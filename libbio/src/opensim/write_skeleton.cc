@@ -7,12 +7,12 @@ namespace {
 
 void appendGeometry(Element& element, const Body& body) {
   Element& geometry = append(element, "attached_geometry");
-  for (std::size_t i = 0; i < body.geometryFiles.size(); ++i) {
+  for (std::size_t i = 0; i < body.geometry.size(); ++i) {
     Element& mesh = append(geometry, "Mesh", fmt::format("{}_geom_{}", body.name, i + 1));
     appendText(mesh, "socket_frame", "..");
-    appendText(mesh, "mesh_file", body.geometryFiles[i]);
-    if (i < body.geometryScales.size() && body.geometryScales[i] != Eigen::Vector3d::Ones())
-      appendNumbers(mesh, "scale_factors", body.geometryScales[i]);
+    appendText(mesh, "mesh_file", body.geometry[i].file);
+    if (body.geometry[i].scale != Eigen::Vector3d::Ones())
+      appendNumbers(mesh, "scale_factors", body.geometry[i].scale);
   }
 }
 

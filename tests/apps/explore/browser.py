@@ -36,7 +36,7 @@ class Browser:
                 time.sleep(0.1)
         arguments = ["--headless=new", "--no-sandbox", "--disable-quic", "--no-first-run",
                      "--disable-background-networking", "--disable-component-update", "--disable-sync",
-                     "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
+                     "--disable-gpu", "--enable-unsafe-swiftshader", "--hide-scrollbars",
                      f"--window-size={size[0]},{size[1]}", f"--user-data-dir={self.profile}"]
         if dark:
             arguments.append("--blink-settings=preferredColorScheme=0")

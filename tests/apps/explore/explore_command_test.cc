@@ -112,7 +112,7 @@ TEST(ReplayWithSet, TakesOtherValuesOfParameters) {
   // of electrodes and of the start, too
   EXPECT_NE(errorOf(replayed({"--set", "emg.BRA.gain=1.5"})), asGiven);
   EXPECT_NE(errorOf(replayed({"--set", "initial.elbow_flexion=0.7"})), asGiven);
-  EXPECT_THAT(replayed({"--set", "hand.mass"}).err, HasSubstr("must be NAME=VALUE"));
+  EXPECT_THAT(replayed({"--set", "hand.mass"}).err, HasSubstr("is not NAME=VALUE"));
   EXPECT_THAT(replayed({"--set", "hand.mass=x"}).err, HasSubstr("x"));
   EXPECT_THAT(replayed({"--set", "hand.weight=1"}).err, HasSubstr("hand.mass"));
   EXPECT_EQ(replayed({"--set", "hand.mass=1", "--set", "hand.mass=2"}).status, 2);

@@ -25,7 +25,7 @@ class GeometryFile : public ::testing::Test {
 
   vtkSmartPointer<vtkPolyData> meshOfFiles(const std::vector<std::string>& files) {
     BodyShape body;
-    body.geometryFiles = files;
+    for (const std::string& file : files) body.geometry.push_back({file});
     unusable.clear();
     return meshFromFiles(body, scratch.path(), unusable);
   }
@@ -50,8 +50,7 @@ TEST_F(GeometryFile, IsDrawnWhereItsPointsAre) {
 TEST_F(GeometryFile, HasTheScaleThatTheModelGives) {
   ball("bone.vtp", {0.1, 0, 0}, 0.02);
   BodyShape body;
-  body.geometryFiles = {"bone.vtp"};
-  body.geometryScales = {{2, 1, 3}};
+  body.geometry = {{"bone.vtp", {2, 1, 3}}};
   double bounds[6];
   meshFromFiles(body, scratch.path(), unusable)->GetBounds(bounds);
   EXPECT_NEAR((bounds[0] + bounds[1]) / 2, 0.2, 1e-3);

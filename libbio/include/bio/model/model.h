@@ -25,14 +25,20 @@ struct FramePlacement {
 
 // Skeleton ----------------------------------------------------------------------------------------
 
+/// A mesh of a body, for pictures only.
+struct BodyGeometry {
+  std::string file;                                 ///< .vtp
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< along x, y and z
+  friend bool operator==(const BodyGeometry&, const BodyGeometry&) = default;
+};
+
 struct Body {
   std::string name;
   double mass = 0;                                       ///< [kg] ≥ 0
   Eigen::Vector3d massCenter = Eigen::Vector3d::Zero();  ///< in the body frame [m]
   std::array<double, 6> inertia = {0, 0, 0,
                                    0, 0, 0};  ///< xx yy zz xy xz yz about massCenter [kg m²]
-  std::vector<std::string> geometryFiles;     ///< .vtp names, for pictures only
-  std::vector<Eigen::Vector3d> geometryScales = {};  ///< of each of them along x, y and z
+  std::vector<BodyGeometry> geometry;
   friend bool operator==(const Body&, const Body&) = default;
 };
 

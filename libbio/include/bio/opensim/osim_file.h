@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "bio/model/model.h"
 
@@ -30,12 +31,18 @@ Model readOsim(const std::filesystem::path& file);
 /// numbers
 void writeOsim(const Model& model, const std::filesystem::path& file);
 
-/// Writes to `file` a copy of the document `original` that is changed to describe `model`: numbers
-/// that differ are replaced, forces and wrap objects added or removed; all other content (comments,
-/// pictures, controllers, unknown classes) is kept. `file` may be `original`. If that is a robot
-/// description, the copy is of the OpenSim 4 document to which it was translated.
+/// The document `original`, changed to describe `model`: numbers that differ are replaced, forces
+/// and wrap objects added or removed; all other content (comments, pictures, controllers, unknown
+/// classes) is kept. Of a robot description it is the OpenSim 4 document to which that is
+/// translated.
+/// @param name  of the new document, for messages
 /// @throws FileError as the two above
 /// @throws std::invalid_argument if the document cannot express a change
+std::string rewrittenOsim(const std::filesystem::path& original, const Model& model,
+                          const std::string& name);
+
+/// Writes rewrittenOsim(); `file` may be `original`.
+/// @throws what rewrittenOsim throws; FileError if it cannot be written
 void rewriteOsim(const std::filesystem::path& original, const Model& model,
                  const std::filesystem::path& file);
 
