@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Gathers the pages of the documentation site: a folder that sphinx-build reads.
 
-    pages.py SOURCE COMMANDS.json FOLDER
+    pages.py SOURCE COMMANDS.json FOLDER [NOTEBOOKS]
 
 The pages of docs/, docs/site/, docs/theory/, docs/decisions/, validation/ and bench/ are taken as they are, the README
 in three parts. A link from one to another leads to its page; a link to any other file of the source tree becomes its
@@ -16,6 +16,7 @@ import pathlib
 import re
 import shutil
 import sys
+import textwrap
 
 README_PARTS = {  # sections of the README, by page
     "tour.md": ["Five minutes"],
@@ -157,6 +158,29 @@ class Site:
             self.write(f"python_reference/{name}.md", python_page(name, node, defined))
             shown.append(f"python_reference/{name}.md")
         self.write("python_reference/index.md", page + toctree(shown, "python_reference"))
+
+    def notebooks(self, executed):
+        pages = []
+        for file in sorted((self.source / "docs/notebooks").glob("*.ipynb")):
+            done = executed / f"{file.stem}.md" if executed else None
+            if done and done.exists():
+                text = done.read_text(encoding="utf-8")
+                (self.folder / "notebooks").mkdir(exist_ok=True)
+                for picture in executed.glob(f"{file.stem}_*.png"):
+                    shutil.copy(picture, self.folder / "notebooks" / picture.name)
+            else:
+                cells = json.loads(file.read_text(encoding="utf-8"))["cells"]
+                text = "\n\n".join("".join(cell["source"]) if cell["cell_type"] == "markdown" else f"```python\n{''.join(cell['source'])}\n```" for cell in cells)
+            # long lines of results are broken; objects that have no other text are left out
+            lines = [line if not line.startswith("    ") or len(line) < 104 else textwrap.fill(line, 104, initial_indent="    ", subsequent_indent="      ")
+                     for line in text.split("\n") if not re.match(r"    (<matplotlib|Text\()", line)]
+            page = f"notebooks/{file.stem}.md"
+            text = LINK.sub(lambda found: found.group(0) if found.group(1).startswith("!") else self.linked(file, page, found.group(0)), "\n".join(lines))
+            self.write(page, text + f"\n\nThis page is `docs/notebooks/{file.name}`.\n")
+            pages.append(page)
+        order = ["five_minutes", "your_own_emg", "what_can_my_data_know", "what_does_my_model_lack"]
+        pages.sort(key=lambda page: order.index(pathlib.PurePath(page).stem) if pathlib.PurePath(page).stem in order else len(order))
+        self.write("notebooks/index.md", "# Notebooks\n\nIn Python, with figures. CI executes them.\n" + toctree(pages, "notebooks", False))
 
     def schemas(self):
         text = "# Results as JSON\n\n`summary.json` of every subcommand, and `verdict.json` of `discover`. The files `docs/schemas/*.schema.json` are JSON Schemas of them; tests hold every result to them.\n"
@@ -317,7 +341,7 @@ def python_page(name, node, defined):
 
 
 def main():
-    if len(sys.argv) != 4:
+    if len(sys.argv) not in (4, 5):
         print(__doc__, file=sys.stderr)
         return 2
     source, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[3])
@@ -329,6 +353,7 @@ def main():
         site.readme()
         site.commands(json.loads(pathlib.Path(sys.argv[2]).read_text(encoding="utf-8")))
         site.python()
+        site.notebooks(pathlib.Path(sys.argv[4]) if len(sys.argv) == 5 else None)
         site.schemas()
     except Wrong as wrong:
         print(f"pages.py: {wrong}", file=sys.stderr)
