@@ -14,4 +14,5 @@ html_theme = "furo"
 html_title = f"FisherHill {release}"
 html_show_sphinx = html_show_copyright = html_copy_source = False
 highlight_language = "none"
+smartquotes = False
 myst_heading_anchors = 4

@@ -136,9 +136,9 @@ class Site:
         names = [command["name"] for command in tree["subcommands"]]
         text = f"# Commands\n\n{tree['purpose']}. `fisherhill SUBCOMMAND --help` prints what stands here.\n\n| subcommand | does |\n|---|---|\n"
         for command in tree["subcommands"]:
-            text += f"| [{command['name']}]({command['name']}.md) | {cell(command['purpose'])} |\n"
+            text += f"| [{command['name']}](commands/{command['name']}.md) | {cell(command['purpose'])} |\n"
             self.write(f"commands/{command['name']}.md", command_page(command))
-        self.write("commands/index.md", text + toctree([f"commands/{name}.md" for name in names], "commands"))
+        self.write("commands.md", text + toctree([f"commands/{name}.md" for name in names], ""))
 
     def python(self):
         stub = self.source / "python/src/fisherhill/__init__.pyi"
