@@ -2,6 +2,7 @@
 #include <string>
 
 #include "command/command_line.h"
+#include "command/command_tree.h"
 #include "command/completion.h"
 #include "command/described_commands.h"
 #include "command/manual_page.h"
@@ -9,8 +10,9 @@
 #include "program/all_commands.h"
 #include "robot_options/robot_program.h"
 
-// describe_commands man|man-mpi|man-render|man-robot|bash|zsh: what is installed beside the program, read off
-// its command line.
+// describe_commands man|man-mpi|man-render|man-robot|bash|zsh: what is installed beside the
+// program, read off its command line. describe_commands json: the command line itself, from which
+// its documents are made.
 int main(int count, char** arguments) {
   const std::string what = count == 2 ? arguments[1] : "";
   app::CommandLine line(app::allCommandsWith(app::robotCommand(), app::discoverInRobot));
@@ -35,8 +37,12 @@ int main(int count, char** arguments) {
     std::cout << app::bashCompletion(program);
   } else if (what == "zsh") {
     std::cout << app::zshCompletion(program);
+  } else if (what == "json") {
+    std::cout << app::commandTree(program).dump(1) << '\n';
   } else {
-    std::cerr << "describe_commands: argument must be man, man-mpi, man-render, man-robot, bash or zsh\n";
+    std::cerr
+        << "describe_commands: argument must be man, man-mpi, man-render, man-robot, bash, zsh or "
+           "json\n";
     return 2;
   }
   std::cout.flush();

@@ -14,6 +14,7 @@ namespace bio {
 namespace {
 
 constexpr std::size_t numOrderPostures = 6;
+constexpr double sameLength = 1e-9;  // [m]
 // How far beyond an object's middle a contact may slip, of its extent. Measured: without a limit 11
 // of 500 lengths of MoBL_ARMS wind up, by 1 to 78 mm; with 0 TRIlong of arm26 jumps by 1.9 mm, with
 // this by 0.04 mm.
@@ -173,7 +174,9 @@ class ChainCompiler {
         ++found;
         length += taut.length;
       }
-      if (found > bestFound || (found == bestFound && length < bestLength)) {
+      // where the order makes no difference, that of the file stays, whatever the rounding
+      const double shorter = bestLength - sameLength * static_cast<double>(found);
+      if (found > bestFound || (found == bestFound && length < shorter)) {
         bestFound = found;
         bestLength = length;
         best = chain_.members;

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "command/command_line.h"
+#include "command/command_tree.h"
 #include "command/completion.h"
 #include "command/described_commands.h"
 #include "command/manual_page.h"
@@ -191,6 +192,23 @@ TEST(ManualPage, KeepsWhatRoffWouldTakeForARequest) {
                              false});
   const std::string page = manualPage(program, "1.2.3");
   EXPECT_THAT(page, testing::HasSubstr("\\&.hidden \\en 'quoted'\n\\&.TP; default \\-1\n"));
+}
+
+TEST_F(Pages, TreeHasEverySubcommandWithEveryOptionAndItsExample) {
+  const nlohmann::ordered_json tree = commandTree(program);
+  EXPECT_EQ(tree.at("subcommands").size(), subcommandsOf(line.program()).size());
+  for (const CLI::App* command : subcommandsOf(line.program())) {
+    const auto& all = tree.at("subcommands");
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) {
+      return one.at("name") == command->get_name();
+    });
+    ASSERT_NE(found, all.end()) << command->get_name();
+    std::set<std::string> named;
+    for (const auto& option : found->at("options"))
+      for (const auto& name : option.at("names")) named.insert(name.get<std::string>());
+    EXPECT_EQ(named, optionsInHelp(*command)) << command->get_name();
+    EXPECT_THAT(found->at("example").get<std::string>(), testing::HasSubstr("fisherhill "));
+  }
 }
 
 }  // namespace

@@ -4,30 +4,19 @@
 #include <regex>
 #include <sstream>
 
+#include "apps/documents/shown_commands.h"
 #include "support/run_program.h"
 #include "support/scratch_folder.h"
 
 namespace {
 
+using documents::consoleRuns;
+using documents::shellLines;
+using documents::ShownRun;
 using support::contentOf;
 using support::ScratchFolder;
 
 const std::filesystem::path source = FISHERHILL_SOURCE_DIR;
-
-/// The lines of every ```sh block of a file.
-std::vector<std::string> shellLines(const std::filesystem::path& file) {
-  std::vector<std::string> lines;
-  std::istringstream text(contentOf(file));
-  bool inside = false;
-  for (std::string line; std::getline(text, line);) {
-    if (line.starts_with("```")) {
-      inside = !inside && line == "```sh";
-    } else if (inside && !line.empty()) {
-      lines.push_back(line);
-    }
-  }
-  return lines;
-}
 
 /// Commands that build or install: they cannot run inside a test of what they built. CI runs them.
 bool isRunByCi(const std::string& line) {
@@ -57,28 +46,6 @@ TEST(Readme, EveryCommandOfTheProgramWorks) {
   EXPECT_GT(commands, 0);
   const support::ProgramResult result = support::runProgram({"bash", "-c", script}, scratch.path());
   EXPECT_EQ(result.status, 0) << result.err << result.out;
-}
-
-/// A command of a ```console block, and the lines shown below it.
-struct ShownRun {
-  std::string command;
-  std::vector<std::string> output;
-};
-
-std::vector<ShownRun> consoleRuns(const std::filesystem::path& file) {
-  std::vector<ShownRun> runs;
-  std::istringstream text(contentOf(file));
-  bool inside = false;
-  for (std::string line; std::getline(text, line);) {
-    if (line.starts_with("```")) {
-      inside = !inside && line == "```console";
-    } else if (inside && line.starts_with("$ ")) {
-      runs.push_back({line.substr(2), {}});
-    } else if (inside && line != "  …") {
-      runs.back().output.push_back(line);
-    }
-  }
-  return runs;
 }
 
 TEST(Readme, TourPrintsWhatItShows) {

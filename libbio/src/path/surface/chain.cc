@@ -64,6 +64,21 @@ bool hasLeapt(std::span<const ChainObject> objects, const std::array<ContactMemo
   return false;
 }
 
+// Contacts of two polygons from which Newton's method would go the same way.
+bool isSame(std::span<const ChainObject> objects, const std::array<ContactMemory, maxChain>& was,
+            const std::array<ContactMemory, maxChain>& is) {
+  for (std::size_t j = 0; j < objects.size(); ++j) {
+    if (was[j].passing != is[j].passing) return false;
+    if (is[j].passing != Passing::touching) continue;
+    const double little = 0.01 * sizeOf(objects[j].surface);
+    if ((was[j].p_SA - is[j].p_SA).norm() > little || std::abs(was[j].arc - is[j].arc) > little ||
+        was[j].u_SA.dot(is[j].u_SA) < 0.999) {
+      return false;
+    }
+  }
+  return true;
+}
+
 class Search {
  public:
   Search(const Vector3d& P, const Vector3d& Q, std::span<const ChainObject> objects,
@@ -83,7 +98,7 @@ class Search {
   }
 
   ChainPath run() {
-    if (isFresh_) contacts_ = tautPolygon(P_, Q_, objects_, inPlay_, 400);
+    if (isFresh_) contacts_ = polygon_ = tautPolygon(P_, Q_, objects_, inPlay_, 400);
     constexpr int maxRounds = 60;
     for (int round = 0; round < maxRounds; ++round) {
       if (!solve()) {
@@ -93,7 +108,7 @@ class Search {
       }
       if (liftOff() || touchDown()) continue;
       // a polygon may rest on a ridge; given more rounds it slides down
-      if (isFresh_ && !isShortest(path_) && startAfresh()) continue;
+      if (isFresh_ && !isShortest(path_) && slides() && startAfresh()) continue;
       return finish(path_.event);
     }
     return finish(ChainEvent::notFound);
@@ -174,9 +189,13 @@ class Search {
     if (!isFresh_) path_.event = ChainEvent::jumped;
     isFresh_ = true;
     timesLeft_ = {};
-    contacts_ = tautPolygon(P_, Q_, objects_, inPlay_, 400 << (2 * numFresh_));
+    before_ = polygon_;
+    contacts_ = polygon_ = tautPolygon(P_, Q_, objects_, inPlay_, 400 << (2 * numFresh_));
     return true;
   }
+
+  // Whether the last additional rounds moved the polygon.
+  bool slides() const { return numFresh_ == 0 || !isSame(objects_, before_, polygon_); }
 
   // Leaves the object whose arc is most negative.
   bool liftOff() {
@@ -257,6 +276,7 @@ class Search {
   const Vector3d &P_, &Q_;
   std::span<const ChainObject> objects_;
   std::array<ContactMemory, maxChain> contacts_;
+  std::array<ContactMemory, maxChain> polygon_, before_;  // the last polygon and the one before
   bool isFresh_;
   unsigned leftOut_;
   int numFresh_ = 0, numDropped_ = 0, numSettled_ = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace bio {
@@ -45,17 +46,49 @@ Polygon throughHints(const Vector3d& P, const Vector3d& Q, std::span<const Chain
   return polygon;
 }
 
+// Beyond this distance from its origin nothing is in a surface; infinite for a cylinder.
+double reachOf(const Surface& surface) {
+  if (const auto* sphere = std::get_if<SphereSurface>(&surface)) return sphere->radius();
+  if (const auto* ellipsoid = std::get_if<EllipsoidSurface>(&surface)) {
+    return ellipsoid->semiAxes().maxCoeff();
+  }
+  if (const auto* torus = std::get_if<TorusSurface>(&surface)) {
+    return torus->ringRadius() + torus->tubeRadius();
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+std::array<double, maxChain> reachesOf(std::span<const ChainObject> objects) {
+  std::array<double, maxChain> reaches{};
+  for (std::size_t j = 0; j < objects.size(); ++j) reaches[j] = reachOf(objects[j].surface);
+  return reaches;
+}
+
+// The point of a surface nearest to a point inside; of ellipsoids and tori one near it.
+template <class S>
+Vector3d outOf(const S& surface, const Vector3d& inside) {
+  return ontoSurface(surface, inside);
+}
+Vector3d outOf(const SphereSurface& sphere, const Vector3d& inside) {
+  return inside * (sphere.radius() / inside.norm());
+}
+Vector3d outOf(const CylinderSurface& cylinder, const Vector3d& inside) {
+  const double stretch = cylinder.radius() / inside.head<2>().norm();
+  return {inside.x() * stretch, inside.y() * stretch, inside.z()};
+}
+
 // Out of the object that a corner is in, if any.
 int pushOut(std::span<const ChainObject> objects, const std::array<bool, maxChain>& inPlay,
-            Vector3d& p_G) {
+            const std::array<double, maxChain>& reaches, Vector3d& p_G) {
   int touched = -1;
   for (std::size_t j = 0; j < objects.size(); ++j) {
     if (!inPlay[j]) continue;
+    if ((p_G - objects[j].p_GS).squaredNorm() > reaches[j] * reaches[j]) continue;
     const Vector3d p_S = objects[j].intoFrame(p_G);
     std::visit(
         [&](const auto& surface) {
           if (!(surface.value(p_S) < 0)) return;
-          p_G = objects[j].outOfFrame(ontoSurface(surface, p_S));
+          p_G = objects[j].outOfFrame(outOf(surface, p_S));
           touched = static_cast<int>(j);
         },
         objects[j].surface);
@@ -67,6 +100,7 @@ int pushOut(std::span<const ChainObject> objects, const std::array<bool, maxChai
 void relax(std::span<const ChainObject> objects, const std::array<bool, maxChain>& inPlay,
            int rounds, double near, Polygon& polygon) {
   const auto last = static_cast<std::size_t>(polygon.numCorners - 1);
+  const std::array<double, maxChain> reaches = reachesOf(objects);
   // the best factor for a free string of equal sides; a little less, for the contacts
   const double over = 0.95 * 2 / (1 + std::sin(std::numbers::pi / static_cast<double>(last)));
   for (int round = 0; round < rounds; ++round) {
@@ -79,7 +113,7 @@ void relax(std::span<const ChainObject> objects, const std::array<bool, maxChain
       const Vector3d was = p;
       const Vector3d& before = polygon.corner[i - 1];
       p += factor * (before + share * (polygon.corner[i + 1] - before) - p);
-      polygon.touched[i] = pushOut(objects, inPlay, p);
+      polygon.touched[i] = pushOut(objects, inPlay, reaches, p);
       farthest = std::max(farthest, (p - was).squaredNorm());
     }
     if (farthest < near * near) return;
