@@ -180,6 +180,49 @@ class Model:
             For an unknown name, or an ellipsoid without two equal semi-axes.
         """
 
+    def with_parameters(
+        self,
+        values: Mapping[str, float] | None = None,
+        *,
+        coordinate: str | Sequence[str] = [],
+        lock: dict[str, float] = {},
+        **named: float,
+    ) -> Model:
+        """The model with other values of some of its parameters, as --set of the program takes them.
+
+        What is estimated with it starts at these values and has the means of its priors there. The
+        model itself stays as it is.
+
+        Parameters
+        ----------
+        values : mapping
+            {name: value} in SI units and radians, as {'TRI.radius': 0.018}. Names are those that
+            list_parameters lists; a name may also be an argument of its own, as in
+            with_parameters(**{'TRI.radius': 0.018}).
+        coordinate, lock
+            As in replay; only muscles that move a free coordinate have parameters. Without a
+            coordinate all are free that the model does not lock.
+
+        Returns
+        -------
+        Model
+
+        Raises
+        ------
+        ValueError
+            For an unknown name, with the nearest ones; one given twice, or two that set the same
+            number; a value that breaks a rule; emg.… and initial.…, which belong to a trial.
+        TypeError
+            For a value that is not a number.
+
+        Examples
+        --------
+        >>> model = fisherhill.load_model("models/elbow8.osim")
+        >>> thicker = model.with_parameters({"TRI.radius": 0.018})
+        >>> [one.value for one in fisherhill.list_parameters(thicker) if one.name == "TRI.radius"]
+        [0.018]
+        """
+
     def with_external_loads(self, file: _File) -> Model:
         """The model with forces and torques on bodies, which replay, comparisons and ensemble simulate.
 
@@ -2935,6 +2978,7 @@ class StudySubject:
     train: list[str]
     hold_out: list[str]
     recordings: list[StudyRecording]
+    set: list[str]
 
 @type_check_only
 class StudyFile:
@@ -2949,6 +2993,7 @@ class StudyFile:
     without: list[str]
     coordinates: list[str]
     lock: list[str]
+    set: list[str]
     step: float | None
     subjects: list[StudySubject]
 
@@ -2972,8 +3017,8 @@ def read_study(file: _File) -> StudyFile:
     discover : bool
         Whether a missing effect is looked for.
     max_effects : int
-    without, coordinates, lock : list of str
-        As the program takes them, e.g. lock 'shoulder_elv=30deg'.
+    without, coordinates, lock, set : list of str
+        As the program takes them, e.g. lock 'shoulder_elv=30deg', set 'TRI.radius=0.018'.
     step : float or None
         [s]
     subjects : list
@@ -2984,6 +3029,8 @@ def read_study(file: _File) -> StudyFile:
             Trials.
         recordings : list
             Of raw EMG, of which trials are made: file, config, and held_out.
+        set : list of str
+            Numbers of its model, beside those of the study.
 
     Raises
     ------
