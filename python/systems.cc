@@ -207,9 +207,9 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
   std::vector<std::string> coordinates, names;
   for (const auto& free : system->skeleton().coordinates()) coordinates.push_back(free.name);
   for (const auto& muscle : system->muscles()) names.push_back(muscle.name);
-  return results(
-      "time"_a = py::array_t<double>(py::cast(motion.time)), "coordinates"_a = coordinates,
-      "muscles"_a = names, "q"_a = motion.q.transpose().eval(),
+  return tableResult(
+      "ReplayResult", "time"_a = py::array_t<double>(py::cast(motion.time)),
+      "coordinates"_a = coordinates, "muscles"_a = names, "q"_a = motion.q.transpose().eval(),
       "q_dot"_a = motion.qDot.transpose().eval(),
       "activation"_a = motion.activation.transpose().eval(),
       "fibre_length"_a = motion.fibreLength.transpose().eval(),

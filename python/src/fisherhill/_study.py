@@ -8,6 +8,7 @@ import tempfile
 from types import SimpleNamespace
 
 from . import _fisherhill as fh
+from ._results import StudyRows
 
 
 class _StageFailure(Exception):
@@ -179,7 +180,7 @@ def _asked(plan, names):
 
 def study(file, *, subjects=None, each=None, seed=1, threads=1):
     plan = fh.read_study(file)
-    rows = []
+    rows = StudyRows()
     for subject in _asked(plan, subjects):
         rows.append(_row(plan, subject, seed, threads))
         if each is not None:
