@@ -53,7 +53,7 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 # The module is one Python's own, by the name of its file; NumPy is found when it is imported.
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${FISHERHILL_PYTHON_DEPENDS}, python3-numpy")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "fisherhill")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "fisherhill, python3-matplotlib, python3-pandas")
 # They compile the package's Python files, and remove what was compiled.
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
   ${PROJECT_SOURCE_DIR}/packaging/python/postinst ${PROJECT_SOURCE_DIR}/packaging/python/prerm)

@@ -111,6 +111,8 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/observation/channel_information.h
   include/bio/observation/parameter_information.h
   include/bio/parameters/parameters.h
+  include/bio/parameters/sign_of_parameter.h
+  include/bio/parameters/with_parameters.h
   include/bio/path/chain_starts.h
   include/bio/path/compiled_path.h
   include/bio/path/length_function.h

@@ -4,13 +4,13 @@
 #include <limits>
 #include <optional>
 
-#include "systems.h"
 #include "bio/calibration/calibrate_at_shorter_steps.h"
 #include "bio/calibration/calibrated_model.h"
 #include "bio/calibration/predicted_series.h"
 #include "bio/tables/different_trials.h"
 #include "docstrings.h"
 #include "interruptible.h"
+#include "systems.h"
 
 namespace python {
 namespace {
@@ -49,9 +49,9 @@ double rmse(const bio::TrialSet* set, const Eigen::MatrixXd& predicted) {
 }
 
 /// Predictions of every held-out series.
-py::list predictionsOf(const bio::SteppedCalibration& stepped) {
+py::object predictionsOf(const bio::SteppedCalibration& stepped) {
   py::list list;
-  if (!stepped.heldOut) return list;
+  if (!stepped.heldOut) return tableOfRows(list);
   const bio::TrialSet& heldOut = *stepped.heldOut;
   for (const bio::PredictedSeries& one : bio::predictedSeries(
            *stepped.training, heldOut, stepped.calibration, stepped.options.confidence)) {
@@ -64,7 +64,7 @@ py::list predictionsOf(const bio::SteppedCalibration& stepped) {
         "noise"_a = one.noise, "interval"_a = py::make_tuple(one.lower, one.upper),
         "holds_peak"_a = one.holdsPeak, "share_of_samples_held"_a = one.shareHeld));
   }
-  return list;
+  return tableOfRows(list);
 }
 
 /// Latent excitations {muscle: (sd, distance of knots [s])} instead of what the trials say, if any.
@@ -83,7 +83,8 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
                      const std::vector<bio::Trial>& holdOut, std::optional<double> noise,
                      const std::map<std::string, double>& channelNoise, bool priors,
                      const Pairs& prior, const Pairs& bounds, const std::string& loss,
-                     bool ownStart, const Pairs& latent, int starts, std::uint64_t seed,
+                     bool ownStart, const Pairs& latent,
+                     const std::map<std::string, double>& initial, int starts, std::uint64_t seed,
                      int threads, const std::vector<std::string>& profile, int bootstrap,
                      const Names& coordinate, const std::map<std::string, double>& lock,
                      const std::string& integrator, std::optional<double> step) {
@@ -95,6 +96,7 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
   options.trials.parameters = parameters;
   options.trials.ownStart = ownStart;
   options.trials.latent = true;
+  options.trials.initial = initial;
   options.trials.simulation = choice.simulation();
   options.trials.simulation.duration = 1;
   options.trials.threads = threads;
@@ -131,17 +133,18 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
   py::dict estimates;
   for (const auto& parameter : found.parameters)
     estimates[parameter.asked.name.c_str()] = estimateOf(parameter);
-  return results("estimates"_a = estimates, "correlation"_a = found.correlation,
-                 "other_minima"_a = minima, "step"_a = stepped.options.trials.simulation.step,
-                 "converged"_a = found.converged, "why"_a = info::describe(found.why),
-                 "iterations"_a = found.iterations, "noise"_a = found.noise.sd,
-                 "effective_noise"_a = found.noise.effective,
-                 "rmse_before"_a = rmse(stepped.training.get(), found.before),
-                 "rmse_after"_a = calibrated ? calibrated->rms(false) : NAN,
-                 "rmse_held_out_before"_a = rmse(stepped.heldOut.get(), found.heldOutBefore),
-                 "rmse_held_out"_a = calibrated ? calibrated->rms(true) : NAN,
-                 "held_out_predictions"_a = predictionsOf(stepped),
-                 "model"_a = calibrated ? py::cast(calibrated->model) : py::none());
+  return tableResult("CalibrationResult", "estimates"_a = estimates,
+                     "correlation"_a = found.correlation, "other_minima"_a = minima,
+                     "step"_a = stepped.options.trials.simulation.step,
+                     "converged"_a = found.converged, "why"_a = info::describe(found.why),
+                     "iterations"_a = found.iterations, "noise"_a = found.noise.sd,
+                     "effective_noise"_a = found.noise.effective,
+                     "rmse_before"_a = rmse(stepped.training.get(), found.before),
+                     "rmse_after"_a = calibrated ? calibrated->rms(false) : NAN,
+                     "rmse_held_out_before"_a = rmse(stepped.heldOut.get(), found.heldOutBefore),
+                     "rmse_held_out"_a = calibrated ? calibrated->rms(true) : NAN,
+                     "held_out_predictions"_a = predictionsOf(stepped),
+                     "model"_a = calibrated ? py::cast(calibrated->model) : py::none());
 }
 
 }  // namespace
@@ -152,8 +155,8 @@ void defineCalibration(py::module_& module) {
                    "noise"_a = py::none(), "channel_noise"_a = std::map<std::string, double>(),
                    "priors"_a = true, "prior"_a = Pairs(), "bounds"_a = Pairs(),
                    "loss"_a = "gaussian", "own_start"_a = false, "latent"_a = Pairs(),
-                   "starts"_a = 1, "seed"_a = 1, "threads"_a = 1,
-                   "profile"_a = std::vector<std::string>(), "bootstrap"_a = 0);
+                   "initial"_a = std::map<std::string, double>(), "starts"_a = 1, "seed"_a = 1,
+                   "threads"_a = 1, "profile"_a = std::vector<std::string>(), "bootstrap"_a = 0);
 }
 
 }  // namespace python

@@ -161,10 +161,11 @@ py::object comparisonOf(const bio::Comparison& comparison, const bio::Musculoske
   if (const auto left = bio::leftRange(system, comparison.reference.motion)) {
     warnings.push_back(left->what);
   }
-  return results("coordinates"_a = coordinates, "reference"_a = referenceOf(comparison.reference),
-                 "runs"_a = cells, "largest_stable_step"_a = limits, "observed_order"_a = orders,
-                 "also"_a = others.rms(system, comparison.reference),
-                 "stable_means_rms_below"_a = options.usefulError, "warnings"_a = warnings);
+  return tableResult("CompareResult", "coordinates"_a = coordinates,
+                     "reference"_a = referenceOf(comparison.reference), "runs"_a = cells,
+                     "largest_stable_step"_a = limits, "observed_order"_a = orders,
+                     "also"_a = others.rms(system, comparison.reference),
+                     "stable_means_rms_below"_a = options.usefulError, "warnings"_a = warnings);
 }
 
 py::object compare(const bio::Model& model, const bio::Trial& trial,
@@ -228,11 +229,11 @@ py::object classOf(const bio::MuscleClassMotion& motion) {
                  "q"_a = motion.motion.q.transpose().eval());
 }
 
-py::list compareMuscles(const bio::Model& model, const bio::Trial& trial,
-                        const std::vector<std::string>& classes, double noise,
-                        const std::map<std::string, double>& initial, const Names& coordinate,
-                        const std::map<std::string, double>& lock, const std::string& integrator,
-                        std::optional<double> step) {
+py::object compareMuscles(const bio::Model& model, const bio::Trial& trial,
+                          const std::vector<std::string>& classes, double noise,
+                          const std::map<std::string, double>& initial, const Names& coordinate,
+                          const std::map<std::string, double>& lock, const std::string& integrator,
+                          std::optional<double> step) {
   const SystemChoice choice = systemChoice(model, {trial}, coordinate, lock, integrator, step);
   const auto known = bio::integratorNamed(integrator);
   if (!known || !bio::isVariational(*known)) {
@@ -254,7 +255,7 @@ py::list compareMuscles(const bio::Model& model, const bio::Trial& trial,
   });
   py::list list;
   for (const bio::MuscleClassMotion& motion : found) list.append(classOf(motion));
-  return list;
+  return tableOfRows(list);
 }
 
 }  // namespace

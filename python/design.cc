@@ -160,27 +160,27 @@ py::object designed(const bio::ExperimentDesign& search, const bio::DesignResult
   const auto ofRange = [&](double bio::MotionRange::*number) {
     return each(e.ranges, [&](const bio::MotionRange& range) { return range.*number; });
   };
-  return results("improved"_a = found.improved, "names"_a = names, "units"_a = units,
-                 "values"_a = catalogue.values(all), "of_interest"_a = ofInterest,
-                 "prior_sd"_a = question.priorSd, "bound_before"_a = found.before.bound,
-                 "bound_after"_a = e.bound, "columns"_a = columnsOf(table),
-                 "trial"_a = readAgain(table, e.trial, model), "times"_a = e.measuredTimes,
-                 "observed"_a = namesOf(question.observed), "predicted"_a = flat(e.measured),
-                 "predicted_before"_a = flat(found.before.measured),
-                 "surprise"_a = flat(search.allowanceAt(e)),
-                 "bound_over_time"_a = search.boundOverTime(e),
-                 "bound_over_time_before"_a = search.boundOverTime(found.before),
-                 "coordinates"_a = namesOf(limits), "lowest"_a = ofRange(&bio::MotionRange::lowest),
-                 "highest"_a = ofRange(&bio::MotionRange::highest),
-                 "surprised_lowest"_a = ofRange(&bio::MotionRange::surprisedLowest),
-                 "surprised_highest"_a = ofRange(&bio::MotionRange::surprisedHighest),
-                 "largest_speed"_a = ofRange(&bio::MotionRange::fastest),
-                 "largest_torque"_a = largestTorques(inputs, e.trial),
-                 "largest_torque_rate"_a = largestTorqueRates(inputs, e.trial),
-                 "largest_excitation_rate"_a = inputs.largestExcitationRate(e.trial),
-                 "costs"_a = courseOf(found.costBefore, found.costs), "found_at"_a = found.foundAt,
-                 "simulations"_a = found.runs, "impossible_simulations"_a = found.impossible,
-                 "monte_carlo"_a = monteCarloOf(monteCarlo));
+  return tableResult(
+      "DesignResult", "improved"_a = found.improved, "names"_a = names, "units"_a = units,
+      "values"_a = catalogue.values(all), "of_interest"_a = ofInterest,
+      "prior_sd"_a = question.priorSd, "bound_before"_a = found.before.bound,
+      "bound_after"_a = e.bound, "columns"_a = columnsOf(table),
+      "trial"_a = readAgain(table, e.trial, model), "times"_a = e.measuredTimes,
+      "observed"_a = namesOf(question.observed), "predicted"_a = flat(e.measured),
+      "predicted_before"_a = flat(found.before.measured),
+      "surprise"_a = flat(search.allowanceAt(e)), "bound_over_time"_a = search.boundOverTime(e),
+      "bound_over_time_before"_a = search.boundOverTime(found.before),
+      "coordinates"_a = namesOf(limits), "lowest"_a = ofRange(&bio::MotionRange::lowest),
+      "highest"_a = ofRange(&bio::MotionRange::highest),
+      "surprised_lowest"_a = ofRange(&bio::MotionRange::surprisedLowest),
+      "surprised_highest"_a = ofRange(&bio::MotionRange::surprisedHighest),
+      "largest_speed"_a = ofRange(&bio::MotionRange::fastest),
+      "largest_torque"_a = largestTorques(inputs, e.trial),
+      "largest_torque_rate"_a = largestTorqueRates(inputs, e.trial),
+      "largest_excitation_rate"_a = inputs.largestExcitationRate(e.trial),
+      "costs"_a = courseOf(found.costBefore, found.costs), "found_at"_a = found.foundAt,
+      "simulations"_a = found.runs, "impossible_simulations"_a = found.impossible,
+      "monte_carlo"_a = monteCarloOf(monteCarlo));
 }
 
 py::object design(const bio::Model& model, const bio::Trial& trial,

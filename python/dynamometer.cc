@@ -100,11 +100,11 @@ py::object designOnDynamometer(const bio::Model& model, const std::string& coord
   for (std::size_t n = 0; n < plan.chosen.size(); ++n) {
     chosen.append(experimentOf(plan.chosen[n], plan.information[n], plan.bounds[n], moved, model));
   }
-  return results("names"_a = names, "units"_a = units, "bound_before"_a = before,
-                 "bound_after"_a = plan.bounds.back(), "experiments"_a = chosen,
-                 "candidates"_a = static_cast<int>(plan.candidates),
-                 "candidates_not_simulated"_a = static_cast<int>(plan.failed),
-                 "candidates_unsuitable"_a = static_cast<int>(plan.unsuitable));
+  return tableResult("DynamometerDesignResult", "names"_a = names, "units"_a = units,
+                     "bound_before"_a = before, "bound_after"_a = plan.bounds.back(),
+                     "experiments"_a = chosen, "candidates"_a = static_cast<int>(plan.candidates),
+                     "candidates_not_simulated"_a = static_cast<int>(plan.failed),
+                     "candidates_unsuitable"_a = static_cast<int>(plan.unsuitable));
 }
 
 }  // namespace

@@ -49,11 +49,11 @@ py::object emg(const std::variant<FileName, std::vector<FileName>>& recordings,
   });
   py::dict offsets;
   for (const auto& placed : joined.placed) offsets[placed.file.c_str()] = placed.offset;
-  return results("columns"_a = columnsOf(trial), "muscles"_a = result.muscles,
-                 "electrodes"_a = electrodesOf(result),
-                 "fraction_of_sums_clipped"_a = result.fractionSumAbove, "offsets"_a = offsets,
-                 "latent_excitation"_a = trial.metadata["latent_excitation"],
-                 "remarks"_a = result.remarks, "warnings"_a = result.warnings);
+  return tableResult("EmgResult", "columns"_a = columnsOf(trial), "muscles"_a = result.muscles,
+                     "electrodes"_a = electrodesOf(result),
+                     "fraction_of_sums_clipped"_a = result.fractionSumAbove, "offsets"_a = offsets,
+                     "latent_excitation"_a = trial.metadata["latent_excitation"],
+                     "remarks"_a = result.remarks, "warnings"_a = result.warnings);
 }
 
 /// As `check` shows it.

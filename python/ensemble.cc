@@ -146,13 +146,13 @@ py::object resultOf(const bio::TrialEnsemble& ensemble, const EnsembleRows& rows
   const py::object first = channels[0];
   std::vector<std::string> warnings;
   if (!ensemble.nominalRemark().empty()) warnings.push_back(ensemble.nominalRemark());
-  return results("coordinate"_a = first.attr("name"), "laws"_a = lawsOf(ensemble.laws()),
-                 "parameters"_a = rows.parameters, "outcome"_a = outcomes,
-                 "failed_at"_a = arrayOf(failed), "outputs"_a = first.attr("outputs"),
-                 "spread"_a = first.attr("spread"), "time"_a = arrayOf(ensemble.course()),
-                 "course"_a = first.attr("course"), "band"_a = first.attr("band"),
-                 "sobol"_a = first.attr("sobol"), "left_range"_a = first.attr("left_range"),
-                 "channels"_a = channels, "warnings"_a = warnings);
+  return tableResult(
+      "EnsembleResult", "coordinate"_a = first.attr("name"), "laws"_a = lawsOf(ensemble.laws()),
+      "parameters"_a = rows.parameters, "outcome"_a = outcomes, "failed_at"_a = arrayOf(failed),
+      "outputs"_a = first.attr("outputs"), "spread"_a = first.attr("spread"),
+      "time"_a = arrayOf(ensemble.course()), "course"_a = first.attr("course"),
+      "band"_a = first.attr("band"), "sobol"_a = first.attr("sobol"),
+      "left_range"_a = first.attr("left_range"), "channels"_a = channels, "warnings"_a = warnings);
 }
 
 py::object ensemble(const bio::Model& model, const bio::Trial& trial,

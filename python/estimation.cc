@@ -111,13 +111,14 @@ py::object estimate(const py::object& predict, const py::object& measured, const
   const info::Estimate found = info::estimate(
       info::LeastSquares(predictor, measurements, parametersOf(start, allNames, bounds, prior)),
       options);
-  return results(
-      "parameters"_a = found.parameters, "names"_a = allNames, "converged"_a = found.converged,
-      "why"_a = info::describe(found.why), "cost"_a = found.cost, "iterations"_a = found.iterations,
-      "evaluations"_a = found.evaluations, "information"_a = found.information,
-      "covariance"_a = found.covariance, "sd"_a = found.covariance.diagonal().cwiseSqrt().eval(),
-      "intervals"_a = MatrixXd(found.intervals), "at_bound"_a = found.atBound,
-      "reduced_chi_square"_a = found.reducedChiSquare);
+  return tableResult("EstimateResult", "parameters"_a = found.parameters, "names"_a = allNames,
+                     "converged"_a = found.converged, "why"_a = info::describe(found.why),
+                     "cost"_a = found.cost, "iterations"_a = found.iterations,
+                     "evaluations"_a = found.evaluations, "information"_a = found.information,
+                     "covariance"_a = found.covariance,
+                     "sd"_a = found.covariance.diagonal().cwiseSqrt().eval(),
+                     "intervals"_a = MatrixXd(found.intervals), "at_bound"_a = found.atBound,
+                     "reduced_chi_square"_a = found.reducedChiSquare);
 }
 
 MatrixXd cramerRaoBound(const MatrixXd& information, const std::vector<std::string>& names) {
@@ -126,12 +127,14 @@ MatrixXd cramerRaoBound(const MatrixXd& information, const std::vector<std::stri
 
 py::object identifiability(const MatrixXd& information, const VectorXd& values,
                            const std::vector<std::string>& names) {
-  const auto report = info::identifiability(
-      information, parametersOf(values, namesFor(names, values.size()), {}, {}),
-      (values.array() == 0).any() ? info::ParameterScale::linear
-                                  : info::ParameterScale::logarithmic);
-  return results("rank"_a = report.rank, "sentences"_a = report.sentences, "sd"_a = report.sd,
-                 "correlation"_a = report.correlation, "determined"_a = report.determined);
+  const auto allNames = namesFor(names, values.size());
+  const auto report =
+      info::identifiability(information, parametersOf(values, allNames, {}, {}),
+                            (values.array() == 0).any() ? info::ParameterScale::linear
+                                                        : info::ParameterScale::logarithmic);
+  return tableResult("IdentifiabilityResult", "names"_a = allNames, "values"_a = values,
+                     "rank"_a = report.rank, "sentences"_a = report.sentences, "sd"_a = report.sd,
+                     "correlation"_a = report.correlation, "determined"_a = report.determined);
 }
 
 }  // namespace

@@ -4,10 +4,10 @@
 
 #include "arguments/columns.h"
 #include "arguments/file_name.h"
-#include "systems.h"
 #include "bio/analysis/fit_paths.h"
 #include "docstrings.h"
 #include "interruptible.h"
+#include "systems.h"
 
 namespace python {
 namespace {
@@ -53,8 +53,9 @@ py::object momentArms(const bio::Model& model, const py::object& postures,
   for (std::size_t m = 0; m < paths.muscles.size(); ++m) {
     touched[paths.muscles[m].c_str()] = paths.touched[m];
   }
-  return results("muscles"_a = paths.muscles, "length"_a = paths.length, "moment_arm"_a = arms,
-                 "touched"_a = touched, "notes"_a = paths.notes, "warnings"_a = paths.warnings);
+  return tableResult("MomentArmsResult", "muscles"_a = paths.muscles, "length"_a = paths.length,
+                     "moment_arm"_a = arms, "touched"_a = touched, "notes"_a = paths.notes,
+                     "warnings"_a = paths.warnings);
 }
 
 py::object fitOf(const bio::MuscleFit& fit) {

@@ -24,16 +24,16 @@ const char* nameOf(bio::Weight weight) {
   return "unusual";
 }
 
-py::list listOf(const std::vector<bio::Remark>& remarks) {
+py::object listOf(const std::vector<bio::Remark>& remarks) {
   py::list list;
   for (const bio::Remark& remark : remarks) {
     list.append(results("weight"_a = nameOf(remark.weight), "subject"_a = remark.subject,
                         "message"_a = remark.message));
   }
-  return list;
+  return tableOfRows(list);
 }
 
-py::list lengthJumps(const bio::Model& model) {
+py::object lengthJumps(const bio::Model& model) {
   std::vector<bio::LengthJump> jumps;
   interruptible([&](const std::atomic<bool>&) { jumps = bio::lengthJumps(model); });
   py::list list;
@@ -42,10 +42,10 @@ py::list lengthJumps(const bio::Model& model) {
                         "value"_a = jump.value, "length"_a = jump.size, "moment_arm"_a = jump.arm,
                         "conditional"_a = jump.conditional, "text"_a = bio::describe(jump)));
   }
-  return list;
+  return tableOfRows(list);
 }
 
-py::list openSimDifferences(const bio::Model& model) {
+py::object openSimDifferences(const bio::Model& model) {
   std::vector<bio::OpenSimDifference> differences;
   interruptible([&](const std::atomic<bool>&) { differences = bio::openSimDifferences(model); });
   py::list list;
@@ -59,7 +59,7 @@ py::list openSimDifferences(const bio::Model& model) {
                         "moment_arm_at"_a = difference.armAt, "apart"_a = apart, "jumps"_a = jumps,
                         "text"_a = bio::describe(difference)));
   }
-  return list;
+  return tableOfRows(list);
 }
 
 py::object muscleStates(const FileName& file) {
@@ -73,11 +73,11 @@ py::object muscleStates(const FileName& file) {
   };
   std::vector<std::string> classes;
   for (const bio::MuscleState& state : states) classes.push_back(state.className);
-  return results("muscle_class"_a = classes,
-                 "fibre_velocity"_a = column(&bio::MuscleState::fibreVelocity),
-                 "tendon_force"_a = column(&bio::MuscleState::tendonForce),
-                 "static_fibre_length"_a = column(&bio::MuscleState::staticFibreLength),
-                 "static_tendon_force"_a = column(&bio::MuscleState::staticTendonForce));
+  return tableResult("MuscleStatesResult", "muscle_class"_a = classes,
+                     "fibre_velocity"_a = column(&bio::MuscleState::fibreVelocity),
+                     "tendon_force"_a = column(&bio::MuscleState::tendonForce),
+                     "static_fibre_length"_a = column(&bio::MuscleState::staticFibreLength),
+                     "static_tendon_force"_a = column(&bio::MuscleState::staticTendonForce));
 }
 
 }  // namespace

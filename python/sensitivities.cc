@@ -120,8 +120,8 @@ py::object sensitivity(const bio::Model& model, const std::vector<bio::Trial>& t
     outputs.push_back(std::move(found.trials[i].outputs));
     gammas.push_back(std::move(found.trials[i].gamma));
   }
-  return results(
-      "names"_a = names, "units"_a = units,
+  return tableResult(
+      "SensitivityResult", "names"_a = names, "units"_a = units,
       "values"_a = studies.catalogue().values(studies.question.selection), "prior_sd"_a = priorSd,
       "observed"_a = observed, "times"_a = times, "outputs"_a = outputs, "gamma"_a = gammas,
       "fisher"_a = information.fisher,
@@ -156,9 +156,9 @@ py::object parameterSweep(const bio::Model& model, const bio::Trial& trial,
     outcomes.emplace_back(bio::name(run.motion.outcome));
   }
   const bio::Trajectory& nominal = found->nominal;
-  return results(
-      "parameter"_a = found->parameter.name, "unit"_a = found->parameter.unit,
-      "model_value"_a = found->parameter.value,
+  return tableResult(
+      "ParameterSweepResult", "parameter"_a = found->parameter.name,
+      "unit"_a = found->parameter.unit, "model_value"_a = found->parameter.value,
       "time"_a =
           Eigen::VectorXd(Eigen::VectorXd::Map(nominal.time.data(), std::ssize(nominal.time))),
       "nominal"_a = Eigen::VectorXd(nominal.q.row(0).transpose()),
@@ -201,10 +201,12 @@ py::object profileLikelihood(const bio::Model& model, const std::vector<bio::Tri
     best.row(k) = point.parameters.transpose();
     converged.push_back(point.converged);
   }
-  return results("parameter"_a = found.parameter.name, "unit"_a = found.parameter.unit,
-                 "values"_a = values, "costs"_a = costs, "threshold"_a = found.profile.threshold,
-                 "bounded_below"_a = found.boundedBelow(), "bounded_above"_a = found.boundedAbove(),
-                 "names"_a = names, "parameters"_a = best, "converged"_a = converged);
+  return tableResult("ProfileLikelihoodResult", "parameter"_a = found.parameter.name,
+                     "unit"_a = found.parameter.unit, "values"_a = values, "costs"_a = costs,
+                     "threshold"_a = found.profile.threshold,
+                     "bounded_below"_a = found.boundedBelow(),
+                     "bounded_above"_a = found.boundedAbove(), "names"_a = names,
+                     "parameters"_a = best, "converged"_a = converged);
 }
 
 py::object globalSensitivity(const bio::Model& model, const std::vector<bio::Trial>& trials,
@@ -245,7 +247,8 @@ py::object globalSensitivity(const bio::Model& model, const std::vector<bio::Tri
                     "variance"_a = found.sobol->variance, "runs"_a = found.sobol->runs,
                     "undefined"_a = found.sobol->undefined);
   }
-  return results("names"_a = names, "morris"_a = morris, "sobol"_a = sobol);
+  return tableResult("GlobalSensitivityResult", "names"_a = names, "morris"_a = morris,
+                     "sobol"_a = sobol);
 }
 
 /// One σ for all channels with the unit of the first, or one for each by name.
@@ -307,13 +310,14 @@ py::object costGradient(const bio::Model& model, const std::vector<bio::Trial>& 
   for (const bio::CostGradient& trial : cost.trials) {
     excitations.push_back(trial.excitation.transpose());
   }
-  return results("names"_a = names, "units"_a = units, "values"_a = at, "cost"_a = cost.value,
-                 "gradient"_a = cost.gradient, "excitation_gradient"_a = excitations);
+  return tableResult("CostGradientResult", "names"_a = names, "units"_a = units, "values"_a = at,
+                     "cost"_a = cost.value, "gradient"_a = cost.gradient,
+                     "excitation_gradient"_a = excitations);
 }
 
-py::list listParameters(const bio::Model& model, const Names& coordinate,
-                        const std::map<std::string, double>& lock, const std::string& integrator,
-                        std::optional<double> step) {
+py::object listParameters(const bio::Model& model, const Names& coordinate,
+                          const std::map<std::string, double>& lock, const std::string& integrator,
+                          std::optional<double> step) {
   const SystemChoice choice = systemChoice(model, {}, coordinate, lock, integrator, step);
   const bio::MusculoskeletalSystem system(model, choice.systemOptions());
   const bio::ParameterCatalogue catalogue(model, system, {system.skeleton().defaultValues(), {}});
@@ -323,7 +327,7 @@ py::list listParameters(const bio::Model& model, const Names& coordinate,
                         "meaning"_a = p.meaning, "lower"_a = p.lower, "upper"_a = p.upper,
                         "deviation"_a = p.sd, "is_group"_a = p.isGroup));
   }
-  return list;
+  return tableOfRows(list);
 }
 
 }  // namespace

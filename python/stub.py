@@ -24,7 +24,7 @@ def definitions(body, kind):
 functions = definitions(tree.body, ast.FunctionDef)
 classes = {name: node for name, node in definitions(tree.body, ast.ClassDef).items() if not decorated(node, "type_check_only")}
 results = {
-    name: {one.target.id: one.annotation for one in node.body}
+    name: {one.target.id: one.annotation for one in node.body if isinstance(one, ast.AnnAssign)}
     for name, node in definitions(tree.body, ast.ClassDef).items()
     if decorated(node, "type_check_only")
 }
@@ -97,11 +97,19 @@ def mistakes(value, annotation, where):
     return [] if right else [f"{where}: {value!r}, must be {name}"]
 
 
+def bases(name):
+    """Of a class of results, as the stub has them."""
+    return [base.id for base in definitions(tree.body, ast.ClassDef)[name].bases if isinstance(base, ast.Name)]
+
+
 def mistakes_inside(value, container, inside, where):
     if container == "Literal":
         choices = ast.literal_eval(inside)
         return [] if value in choices else [f"{where}: {value!r}, must be one of {choices}"]
-    if type(value).__name__ != container:
+    if container in ("_Rows", "_PlottedRows"):
+        if not isinstance(value, list) or type(value) is list or hasattr(value, "plot") != (container == "_PlottedRows"):
+            return [f"{where}: {value!r}, must be a list that is a table"]
+    elif type(value).__name__ != container:
         return [f"{where}: {value!r}, must be {container}"]
     if container == "dict":
         key, of = inside.elts
@@ -114,8 +122,11 @@ def mistakes_inside(value, container, inside, where):
 
 
 def mistakes_of_result(value, name, where):
-    if type(value) is not types.SimpleNamespace:
-        return [f"{where}: {value!r}, must be SimpleNamespace"]
+    expected = name if bases(name) else "SimpleNamespace"
+    if not isinstance(value, types.SimpleNamespace) or type(value).__name__ != expected:
+        return [f"{where}: {value!r}, must be {expected}"]
+    if hasattr(value, "plot") != ("_Plotted" in bases(name)):
+        return [f"{where}: {value!r} has plot() if the stub has not"]
     members = vars(value)
     found = [f"{where}.{one}: not in the stub" for one in members if one not in results[name]]
     for one, annotation in results[name].items():

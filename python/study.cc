@@ -16,7 +16,8 @@ py::object subjectOf(const bio::StudySubject& subject) {
                               "held_out"_a = recording.isHeldOut));
   }
   return results("name"_a = subject.name, "model"_a = subject.model, "train"_a = subject.train,
-                 "hold_out"_a = subject.heldOut, "recordings"_a = recordings);
+                 "hold_out"_a = subject.heldOut, "recordings"_a = recordings,
+                 "set"_a = subject.sets);
 }
 
 py::object readStudy(const FileName& file) {
@@ -29,7 +30,7 @@ py::object readStudy(const FileName& file) {
                  "own_start"_a = study.ownStart, "priors"_a = study.priors, "noise"_a = noise,
                  "starts"_a = study.starts, "discover"_a = study.discover,
                  "max_effects"_a = study.maxEffects, "without"_a = study.without,
-                 "coordinates"_a = study.coordinates, "lock"_a = study.locks,
+                 "coordinates"_a = study.coordinates, "lock"_a = study.locks, "set"_a = study.sets,
                  "step"_a = study.step_s, "subjects"_a = subjects);
 }
 

@@ -12,6 +12,7 @@
 #include "bio/model/convert_muscles.h"
 #include "bio/opensim/external_loads.h"
 #include "bio/opensim/osim_file.h"
+#include "bio/parameters/with_parameters.h"
 #include "bio/path/with_cylinders.h"
 #include "bio/simulation/integrator_names.h"
 #include "bio/skeleton/articulated_tree.h"
@@ -67,6 +68,44 @@ bio::Model withMuscles(bio::Model model, const std::string& className) {
 bio::Model withExternalLoads(bio::Model model, const FileName& file) {
   model.externalLoads = bio::readExternalLoads(file.text, model, model.warnings);
   return model;
+}
+
+bio::NamedValue namedValue(const py::handle& name, const py::handle& value) {
+  if (!py::isinstance<py::str>(name)) {
+    throw py::type_error(fmt::format("a parameter's name is a {}, must be a str",
+                                     py::type::of(name).attr("__name__").cast<std::string>()));
+  }
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (PyErr_Occurred() != nullptr) {
+    PyErr_Clear();
+    throw py::type_error(fmt::format("{}: a {}, must be a number", name.cast<std::string>(),
+                                     py::type::of(value).attr("__name__").cast<std::string>()));
+  }
+  return {name.cast<std::string>(), number};
+}
+
+/// Copies, too.
+bio::Model withParameters(const bio::Model& model, const py::object& values,
+                          const Names& coordinate, const std::map<std::string, double>& lock,
+                          const py::kwargs& named) {
+  std::vector<bio::NamedValue> asked;
+  if (!values.is_none()) {
+    if (!py::hasattr(values, "items")) {
+      throw py::type_error(fmt::format("values: a {}, must be a dict of numbers by name",
+                                       py::type::of(values).attr("__name__").cast<std::string>()));
+    }
+    for (const auto& [name, value] : py::dict(values)) asked.push_back(namedValue(name, value));
+  }
+  for (const auto& [name, value] : named) asked.push_back(namedValue(name, value));
+  if (asked.empty()) return model;
+  const auto* names = std::get_if<std::vector<std::string>>(&coordinate);
+  const bool chooses = names == nullptr || !names->empty();
+  const bio::SystemOptions options =
+      chooses ? systemChoice(model, {}, coordinate, lock, "vi", {}, true).systemOptions()
+              : bio::optionsOfWholeModel(model, lock);
+  bio::ModelWithParameters changed = bio::withParameters(model, options, asked);
+  bio::requireOfModel(changed);
+  return std::move(changed.model);
 }
 
 py::dict coursesOf(const std::vector<bio::MeasuredChannel>& motions) {
@@ -168,9 +207,9 @@ py::object replay(const bio::Model& given, const bio::Trial& trial,
   std::vector<std::string> coordinates, names;
   for (const auto& free : system->skeleton().coordinates()) coordinates.push_back(free.name);
   for (const auto& muscle : system->muscles()) names.push_back(muscle.name);
-  return results(
-      "time"_a = py::array_t<double>(py::cast(motion.time)), "coordinates"_a = coordinates,
-      "muscles"_a = names, "q"_a = motion.q.transpose().eval(),
+  return tableResult(
+      "ReplayResult", "time"_a = py::array_t<double>(py::cast(motion.time)),
+      "coordinates"_a = coordinates, "muscles"_a = names, "q"_a = motion.q.transpose().eval(),
       "q_dot"_a = motion.qDot.transpose().eval(),
       "activation"_a = motion.activation.transpose().eval(),
       "fibre_length"_a = motion.fibreLength.transpose().eval(),
@@ -290,6 +329,9 @@ void defineSystems(py::module_& module) {
           "file"_a, docstrings::Model_write)
       .def("with_muscles", &withMuscles, "muscle_class"_a, docstrings::Model_with_muscles)
       .def("with_cylinders", &bio::withCylinders, "names"_a, docstrings::Model_with_cylinders)
+      .def("with_parameters", &withParameters, "values"_a = py::none(), py::kw_only(),
+           "coordinate"_a = std::vector<std::string>(), "lock"_a = std::map<std::string, double>(),
+           docstrings::Model_with_parameters)
       .def("with_external_loads", &withExternalLoads, "file"_a,
            docstrings::Model_with_external_loads)
       .def("__repr__", [](const bio::Model& self) {

@@ -7,6 +7,7 @@
 #include "bio/analysis/replay.h"
 #include "bio/model/units.h"
 #include "bio/opensim/osim_file.h"
+#include "bio/parameters/sign_of_parameter.h"
 #include "bio/review/trial_review.h"
 #include "calibrate/calibrate_methods.h"
 #include "calibrate/calibrate_remarks.h"
@@ -19,6 +20,7 @@
 #include "options/named_pairs.h"
 #include "options/number_rules.h"
 #include "options/parameter_list.h"
+#include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/driven_trials.h"
@@ -136,6 +138,7 @@ class Calibrate : public Command {
     for (const std::string& warning : model.warnings) summary.warn(warning);
     convertMuscles(muscleClass_, model, summary);
     chooseCoordinates(simulation_, model, trials_);
+    model = withSetParameters(std::move(model), simulation_, summary);
     const bio::TrialSet training(model, systemOptions(simulation_), read(trials_, model, summary),
                                  typed.trials);
     for (const std::string& warning : training.system().warnings()) summary.warn(warning);
@@ -197,6 +200,7 @@ class Calibrate : public Command {
     bio::Model model = readModel(model_, summary);
     convertMuscles(muscleClass_, model, summary);
     chooseCoordinates(simulation_, model, trials_);
+    model = withSetParameters(std::move(model), simulation_, summary);
     return listParameters(context, model, movableSystem(model, model_, simulation_, summary));
   }
 
@@ -239,25 +243,13 @@ class Calibrate : public Command {
     return options;
   }
 
-  /// Whether a parameter is positive by its nature, as a muscle's number, a mass or a radius is.
-  static bool cannotBeNegative(const bio::ModelParameter& parameter) {
-    const bio::ParameterTarget& target = parameter.targets.front();
-    const auto* wrap = std::get_if<bio::WrapTarget>(&target);
-    const auto* body = std::get_if<bio::BodyTarget>(&target);
-    return parameter.lower >= 0 &&
-           (std::holds_alternative<bio::MuscleTarget>(target) ||
-            std::holds_alternative<bio::MuscleNumberTarget>(target) ||
-            std::holds_alternative<bio::ForceNumberTarget>(target) || (wrap && wrap->isSize()) ||
-            (body && body->quantity == bio::BodyTarget::Quantity::mass));
-  }
-
   static void boundsMustBePossible(const bio::TrialSet& training,
                                    const bio::CalibrationOptions& options) {
     for (const auto& [name, bounds] : options.bounds) {
       if (bio::namesKnot(name)) continue;  // refused with the reason
       const bio::ModelParameter& parameter =
           training.catalogue().parameters()[training.catalogue().find(name)];
-      if (bounds.first >= 0 || !cannotBeNegative(parameter)) continue;
+      if (bounds.first >= 0 || !bio::cannotBeNegative(parameter)) continue;
       throw std::invalid_argument(fmt::format("--bounds: lower bound of {} = {} {}, must be ≥ 0",
                                               parameter.name, bounds.first, parameter.unit));
     }

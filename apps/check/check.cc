@@ -20,6 +20,7 @@
 #include "bio/tables/trial.h"
 #include "check/recording_contents.h"
 #include "command/command.h"
+#include "options/set_parameters.h"
 #include "options/trial_input.h"
 #include "output/text.h"
 #include "report/result.h"
@@ -238,6 +239,7 @@ class Check : public Command {
         ->check(CLI::ExistingFile)
         ->type_name("");
     addConvertMusclesOption(options, muscleClass_);
+    addSetOption(options, numbers_.set);
   }
 
   ExitStatus run(const CommandContext& context) override {
@@ -260,7 +262,7 @@ class Check : public Command {
           if (areModels) {
             bio::Model model = bio::readOsim(file);
             convert(file, model, findings);
-            models.push_back(std::move(model));
+            models.push_back(withSetInWholeModel(std::move(model), numbers_, summary));
             modelFiles.push_back(file);
           }
           Contents contents = areModels ? checkModel(file, models.back(), findings)
@@ -276,6 +278,8 @@ class Check : public Command {
       }
     };
     checkAll(true);
+    if (!numbers_.set.empty() && models.empty())
+      throw std::invalid_argument("--set: there is no model among the files, must be one");
     checkAll(false);
     std::vector<std::string> limited;
     for (std::size_t i = 0; i < models.size(); ++i) {
@@ -330,7 +334,8 @@ class Check : public Command {
   }
 
   std::vector<std::string> files_;
-  std::string muscleClass_;  ///< empty: as in the model
+  std::string muscleClass_;    ///< empty: as in the model
+  SimulationOptions numbers_;  ///< --set alone, for every model
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "command/command.h"
 #include "compare/compare_muscles_report.h"
 #include "compare/compare_report.h"
+#include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
@@ -79,6 +80,7 @@ class Compare : public Command {
     addExternalLoads(externalLoads_, model, summary);
     chooseCoordinates(simulation_, model, {trial_});
     requireFreeCoordinate(simulation_);
+    model = withSetParameters(std::move(model), simulation_, summary);
     const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
     const TrialInput input = readTrialInput(trial_, model, system, simulation_, summary);
     const auto& free = system.skeleton().coordinates();
@@ -147,6 +149,7 @@ class Compare : public Command {
     addExternalLoads(externalLoads_, model, summary);
     chooseCoordinates(simulation_, model, {trial_});
     requireFreeCoordinate(simulation_);
+    model = withSetParameters(std::move(model), simulation_, summary);
     const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
     const TrialInput input = readTrialInput(trial_, model, system, simulation_, summary);
     const bio::Coordinate& coordinate = system.skeleton().coordinates().front();

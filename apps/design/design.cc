@@ -9,6 +9,7 @@
 #include "design/design_options.h"
 #include "design/design_report.h"
 #include "design/separating_report.h"
+#include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/interruption.h"
@@ -36,8 +37,9 @@ class Design : public Command {
     if (!typed_.separate.empty()) return separate(context);
     OutputFolder folder(context, {"design.sto"});
     Summary summary(context);
-    const bio::Model model = readModel(typed_.model, summary);
+    bio::Model model = readModel(typed_.model, summary);
     chooseCoordinates(typed_.simulation, model, {typed_.trial}, false, typed_.observe);
+    model = withSetParameters(std::move(model), typed_.simulation, summary);
     const bio::MusculoskeletalSystem system =
         movableSystem(model, typed_.model, typed_.simulation, summary);
     const TrialInput input =
@@ -87,8 +89,9 @@ class Design : public Command {
   ExitStatus separate(const CommandContext& context) {
     OutputFolder folder(context, {"design.sto"});
     Summary summary(context);
-    const bio::Model model = readModel(typed_.model, summary);
+    bio::Model model = readModel(typed_.model, summary);
     chooseCoordinates(typed_.simulation, model, {typed_.trial}, false, typed_.observe);
+    model = withSetParameters(std::move(model), typed_.simulation, summary);
     const bio::MusculoskeletalSystem system =
         movableSystem(model, typed_.model, typed_.simulation, summary);
     summary.addInput(typed_.trial);

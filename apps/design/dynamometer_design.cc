@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "design/design_options.h"
+#include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/output_folder.h"
@@ -42,10 +43,11 @@ ExitStatus designOnDynamometer(const CommandContext& context, const DesignOption
   for (int n = 1; n <= options.count; ++n) names.push_back(fmt::format("experiment_{}.csv", n));
   OutputFolder folder(context, names);
   Summary summary(context);
-  const bio::Model model = readModel(typed.model, summary);
+  bio::Model model = readModel(typed.model, summary);
   checkRoles(options, typed.simulation, model);
   SimulationOptions simulation = typed.simulation;
   simulation.prescribed = {options.coordinate};
+  model = withSetParameters(std::move(model), simulation, summary);
   const bio::MusculoskeletalSystem system = movableSystem(model, typed.model, simulation, summary);
   const bio::Coordinate& coordinate = bio::findCoordinate(model, options.coordinate);
   bio::DynamometerQuestion question = dynamometerQuestion(typed, coordinate);

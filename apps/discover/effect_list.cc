@@ -8,6 +8,7 @@
 #include "bio/discovery/effects.h"
 #include "discover/model_discovery.h"
 #include "info/discovery/discover.h"
+#include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/json_text.h"
@@ -49,8 +50,9 @@ nlohmann::ordered_json effectJson(const bio::discover::EncompassingModel& model,
 ExitStatus listEffects(const CommandContext& context, const std::string& file,
                        const std::vector<std::string>& own, SimulationOptions simulation) {
   Summary summary(context);
-  const bio::Model model = readModel(file, summary);
+  bio::Model model = readModel(file, summary);
   chooseCoordinates(simulation, model, {});
+  model = withSetParameters(std::move(model), simulation, summary);
   movableSystem(model, file, simulation, summary);  // warns and refuses as a search would
   const bio::discover::CoordinateNames coordinates = coordinatesInQuestion(simulation, {});
   const bio::discover::EncompassingModel encompassing = bio::discover::encompassingModel(

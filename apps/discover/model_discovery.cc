@@ -17,6 +17,7 @@
 #include "options/excitation_figure.h"
 #include "options/input_rules.h"
 #include "options/model_methods.h"
+#include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "report/result.h"
@@ -157,8 +158,9 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
       namesOfDiscovery(request.trials.size(), request.heldOut.size());
   OutputFolder folder(context, names);
   Summary summary(context);
-  const bio::Model model = readModel(request.model, summary);
+  bio::Model model = readModel(request.model, summary);
   chooseCoordinates(request.simulation, model, request.trials);
+  model = withSetParameters(std::move(model), request.simulation, summary);
   std::vector<bio::Trial> trials;
   for (const std::string& file : files) {
     summary.addInput(file);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bio/opensim/osim_file.h"
+#include "options/set_parameters.h"
 #include "output/driven_trials.h"
 #include "output/text.h"
 
@@ -99,8 +100,8 @@ class DiscoveryWriter {
       if (!written_.trialsAreCut)
         written_.commands.emplace_back(
             file + ", original model",
-            fmt::format("fisherhill replay {} {}{}", shellWord(request_.model), shellWord(file),
-                        typedOptions(typed, true)));
+            fmt::format("fisherhill replay {} {}{}{}", shellWord(request_.model), shellWord(file),
+                        typedOptions(typed, true), setWords(typed)));
       if (written_.model.empty()) continue;
       const std::string model =
           folder_.active() ? folder_.path(written_.model).string() : written_.model;

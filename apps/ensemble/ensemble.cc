@@ -18,6 +18,7 @@
 #include "options/input_rules.h"
 #include "options/number_rules.h"
 #include "options/observed_channels.h"
+#include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "report/result.h"
@@ -223,8 +224,9 @@ class Ensemble : public Command {
 
   /// By pointer, since the rows' work refers to it.
   std::unique_ptr<const EnsembleStudy> prepare(Summary& summary) {
-    const bio::Model model = readModel(model_, summary);
+    bio::Model model = readModel(model_, summary);
     chooseCoordinates(simulation_, model, {trial_}, false, observe_);
+    model = withSetParameters(std::move(model), simulation_, summary);
     const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
     const TrialInput input = readTrialInput(trial_, model, system, simulation_, summary,
                                             {.channels = !observe_.empty()});

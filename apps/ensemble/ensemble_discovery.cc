@@ -9,6 +9,7 @@
 
 #include "ensemble/missing_rows.h"
 #include "info/version.h"
+#include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/json_text.h"
@@ -69,11 +70,12 @@ std::vector<DataSet> dataSetsIn(const fs::path& folder) {
 
 /// Every file is read once before anything long begins; all become inputs of the summary.
 void checkSets(ModelDiscoveryRequest& each, const std::vector<DataSet>& sets, Summary& summary) {
-  const bio::Model model = readModel(each.model, summary);
+  bio::Model model = readModel(each.model, summary);
   std::vector<std::string> training;
   for (const DataSet& set : sets)
     training.insert(training.end(), set.training.begin(), set.training.end());
   chooseCoordinates(each.simulation, model, training);
+  model = withSetParameters(std::move(model), each.simulation, summary);
   (void)movableSystem(model, each.model, each.simulation, summary);
   for (const DataSet& set : sets) {
     for (const auto* files : {&set.training, &set.heldOut}) {

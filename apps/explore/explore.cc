@@ -12,6 +12,7 @@
 #include "explore/explored_models.h"
 #include "explore/page_parameters.h"
 #include "options/input_rules.h"
+#include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/json_text.h"
@@ -92,6 +93,7 @@ class Explore : public Command {
     models_.push_back(asGiven(summary));
     const bio::Model& model = models_.front().model;
     chooseCoordinates(simulation_, model, trials_);
+    setParameters(models_.front(), summary);
     const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
     std::vector<TrialInput> inputs;
     for (const std::string& file : trials_) {
@@ -151,6 +153,17 @@ class Explore : public Command {
     given.text = documentOf(model_, given.model);
     given.trials = trials_;
     return given;
+  }
+
+  /// The model with the values of --set, and its file as if it had them.
+  void setParameters(ExploredModel& given, Summary& summary) {
+    bio::ModelWithParameters changed = withSetParameters(
+        std::move(given.model), systemOptions(simulation_), simulation_.set, summary);
+    refuseValuesOfTrial(changed);
+    given.model = std::move(changed.model);
+    if (changed.numbers.empty()) return;
+    set_ = std::move(changed.numbers);
+    given.text = bio::rewrittenOsim(given.file, given.model, given.file);
   }
 
   /// The fitted model with and without the effect; the one as given is for comparison.
@@ -234,6 +247,13 @@ class Explore : public Command {
     return text;
   }
 
+  /// By name.
+  Json setNumbers() const {
+    Json numbers = Json::object();
+    for (const bio::SetNumber& one : set_) numbers[one.name] = one.value;
+    return numbers;
+  }
+
   Json pageData(const bio::Model& model, const bio::MusculoskeletalSystem& system,
                 const std::vector<TrialInput>& inputs, const PageParameters& parameters) const {
     Json files = Json::object(), models = Json::array(), trials = Json::array(),
@@ -288,6 +308,7 @@ class Explore : public Command {
               {{"name", "rk4"}, {"label", "Runge–Kutta 4 (rk4)"}}}},
             {"integrator", simulation_.integrator},
             {"step", bio::stepOf(models_.back().model, integrator, simulation_.step)},
+            {"set", setNumbers()},
             {"options", optionText()}};
   }
 
@@ -298,6 +319,7 @@ class Explore : public Command {
   double noise_ = 1;
   SimulationOptions simulation_;
   std::vector<ExploredModel> models_;  ///< as given first
+  std::vector<bio::SetNumber> set_;    ///< in the first
 };
 
 }  // namespace

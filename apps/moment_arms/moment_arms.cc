@@ -10,6 +10,7 @@
 #include "moment_arms/fit_command.h"
 #include "moment_arms/path_jumps.h"
 #include "options/number_rules.h"
+#include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/text.h"
@@ -52,13 +53,15 @@ class MomentArms : public Command {
   ExitStatus run(const CommandContext& context) override {
     Summary summary(context);
     if (fit_.isGiven()) {
-      const bio::Model given = readModel(model_, summary);
+      const bio::Model given =
+          withSetInWholeModel(readModel(model_, summary), model_options_, summary);
       return runFit(context, summary, model_, given, model_options_, fit_);
     }
     OutputFolder folder(context, {"moment_arms.csv"});
-    const bio::Model model = readModel(model_, summary);
-    if (!postures_.empty()) return runPostures(context, folder, summary, model);
+    bio::Model model = readModel(model_, summary);
+    if (!postures_.empty()) return runPostures(context, folder, summary, std::move(model));
     chooseCoordinates(model_options_, model, {});
+    model = withSetParameters(std::move(model), model_options_, summary);
     const bio::SkeletonOptions options = systemOptions(model_options_).skeleton;
     const bio::Skeleton skeleton(model, options);
     for (const std::string& remark : lockRemarks(model, options)) summary.warn(remark);
@@ -116,7 +119,7 @@ class MomentArms : public Command {
 
  private:
   ExitStatus runPostures(const CommandContext& context, OutputFolder& folder, Summary& summary,
-                         const bio::Model& model) {
+                         bio::Model model) {
     summary.addInput(postures_);
     const bio::PostureTable postures = bio::readPostures(postures_, model);
     if (!postures.ignored.empty()) {
@@ -126,6 +129,7 @@ class MomentArms : public Command {
                       postures_, postures.ignored.size(), postures.ignored.front()));
     }
     model_options_.coordinates = postures.coordinates;
+    model = withSetParameters(std::move(model), model_options_, summary);
     const bio::SkeletonOptions options = systemOptions(model_options_).skeleton;
     for (const std::string& remark : lockRemarks(model, options)) summary.warn(remark);
     const bio::PathPostures paths =

@@ -44,7 +44,8 @@ Assignment parseAssignment(std::string_view text) {
   if (equals == text.npos || equals == 0) {
     throw std::invalid_argument(fmt::format("'{}' is not NAME=VALUE", text));
   }
-  return {std::string(text.substr(0, equals)), parseAngle(text.substr(equals + 1))};
+  return {std::string(text.substr(0, equals)), parseAngle(text.substr(equals + 1)),
+          text.ends_with("deg") || text.ends_with("rad")};
 }
 
 }  // namespace app

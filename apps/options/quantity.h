@@ -17,7 +17,8 @@ double parseAngle(std::string_view text);
 /// NAME=VALUE, as --initial and --lock take it.
 struct Assignment {
   std::string name;
-  double value;  ///< [rad] for an angle, [m] for a translation
+  double value;          ///< [rad] for an angle, [m] for a translation
+  bool isAngle = false;  ///< `deg` or `rad` was written
 };
 
 /// @throws std::invalid_argument

@@ -4,6 +4,7 @@
 
 #include "bio/simulation/integrator_names.h"
 #include "options/number_rules.h"
+#include "options/set_parameters.h"
 #include "output/text.h"
 
 namespace app {
@@ -65,15 +66,11 @@ nlohmann::ordered_json settingsOf(const SimulationOptions& options) {
     for (const Assignment& assignment : assignments) list[assignment.name] = assignment.value;
     return list;
   };
-  return {{"integrator", options.integrator},
-          {"step_s", options.stepOrDefault()},
-          {"coordinates", options.coordinates},
-          {"locked", listed(options.locks)},
-          {"initial", listed(options.initial)},
-          {"wrap_as_cylinder", options.wrapAsCylinder},
-          {"ignore_extra", options.ignoreExtra},
-          {"prescribed", options.prescribed},
-          {"held", options.held}};
+  return {{"integrator", options.integrator},           {"step_s", options.stepOrDefault()},
+          {"coordinates", options.coordinates},         {"locked", listed(options.locks)},
+          {"initial", listed(options.initial)},         {"set", listed(options.set)},
+          {"wrap_as_cylinder", options.wrapAsCylinder}, {"ignore_extra", options.ignoreExtra},
+          {"prescribed", options.prescribed},           {"held", options.held}};
 }
 
 void addModelOptions(CLI::App& subcommand, SimulationOptions& options) {
@@ -89,6 +86,7 @@ void addModelOptions(CLI::App& subcommand, SimulationOptions& options) {
                  "value at which another coordinate is locked, as 30deg or 0.52 (rad; m if it "
                  "slides); default: the model's default value")
       ->group(modelGroup);
+  addSetOption(subcommand, options.set)->group(modelGroup);
   subcommand
       .add_option("--wrap-as-cylinder", options.wrapAsCylinder,
                   "treat this wrap ellipsoid as a cylinder; two of its semi-axes must be equal")

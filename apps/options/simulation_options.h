@@ -28,6 +28,7 @@ struct SimulationOptions {
   std::map<std::string, double> held;
   std::vector<Assignment> locks;    ///< values of locked coordinates that differ from the defaults
   std::vector<Assignment> initial;  ///< start values of free coordinates
+  std::vector<Assignment> set;      ///< other values of parameters, as set_parameters.h takes them
   std::vector<std::string> wrapAsCylinder;  ///< ellipsoids to treat as cylinders
   bool ignoreExtra = false;                 ///< ignore unknown columns of a trial
 
@@ -48,14 +49,14 @@ CLI::Option* addAssignments(CLI::App& subcommand, const std::string& name,
                             std::vector<Assignment>& target, const std::string& description);
 
 /// The options that say what is simulated, as words of another command: " --coordinate knee …".
-/// Starts are not among them.
+/// Starts and values of parameters (setWords) are not among them.
 /// @param withStep  whether --step is
 std::string typedOptions(const SimulationOptions& options, bool withStep);
 
 /// All of them as one JSON object, to compare with another run.
 nlohmann::ordered_json settingsOf(const SimulationOptions& options);
 
-/// Adds only the options of the model: --coordinate, --lock and --wrap-as-cylinder.
+/// Adds only the options of the model: --coordinate, --lock, --set and --wrap-as-cylinder.
 void addModelOptions(CLI::App& subcommand, SimulationOptions& options);
 
 }  // namespace app

@@ -9,6 +9,7 @@
 
 #include "bio/model/units.h"
 #include "bio/skeleton/free_coordinates.h"
+#include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
@@ -155,7 +156,8 @@ double largestActivation(const view::SystemMotion& motion) {
 
 Shown readShown(const RenderOptions& options, Summary& summary) {
   Shown shown;
-  const bio::Model model = readModel(options.model, summary);
+  const bio::Model model =
+      withSetInWholeModel(readModel(options.model, summary), options.simulation, summary);
   const bool isPosture = options.states.empty();
   if (!isPosture) summary.addInput(options.states);
   view::SystemMotion motion =

@@ -8,6 +8,7 @@
 #include "bio/opensim/osim_file.h"
 #include "command/command.h"
 #include "options/model_methods.h"
+#include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
@@ -17,17 +18,14 @@
 namespace app {
 namespace {
 
-/// The model, mapping and start with the values of --set.
-bio::ParameterCatalogue::Setting settingOf(const std::vector<Assignment>& typed,
-                                           const bio::ParameterCatalogue& catalogue) {
+/// Mapping and start with the values of --set that belong to the trial.
+bio::ParameterCatalogue::Setting trialSetting(const std::vector<bio::NamedValue>& typed,
+                                              const bio::ParameterCatalogue& catalogue) {
   std::vector<std::size_t> selection;
   Eigen::VectorXd values(static_cast<Eigen::Index>(typed.size()));
-  for (const Assignment& one : typed) {
-    const std::size_t index = catalogue.find(one.name);
-    if (std::find(selection.begin(), selection.end(), index) != selection.end())
-      throw std::invalid_argument(fmt::format("--set: '{}' is given twice", one.name));
+  for (const bio::NamedValue& one : typed) {
     values[static_cast<Eigen::Index>(selection.size())] = one.value;
-    selection.push_back(index);
+    selection.push_back(catalogue.find(one.name));
   }
   return catalogue.at(selection, values);
 }
@@ -50,10 +48,6 @@ class Replay : public Command {
         "--reactions", reactions_,
         "also the reactions at all locked coordinates, as NAME.reaction in forces.sto; "
         "without it, at those with a column NAME.moment");
-    addAssignments(options, "--set", set_,
-                   "another value of a parameter, in its unit (an angle also as 34deg), as "
-                   "TRI.radius=0.018; may be repeated; `sensitivity MODEL --list-parameters` lists "
-                   "them");
     options.add_flag("--strict", strict_,
                      "exit with status 1 if a coordinate leaves its range by more than a tenth of "
                      "it, or a fibre leaves 0.2 to 2 optimal lengths");
@@ -66,12 +60,15 @@ class Replay : public Command {
     Summary summary(context);
     bio::Model model = readModel(model_, summary);
     convertMuscles(muscleClass_, model, summary);
+    addExternalLoads(externalLoads_, model, summary);
+    chooseCoordinates(simulation_, model, {trial_}, reactions_);
+    bio::ModelWithParameters set =
+        withSetParameters(std::move(model), systemOptions(simulation_), simulation_.set, summary);
+    model = std::move(set.model);
     if (!muscleClass_.empty()) {
       folder.writeFile("model.osim",
                        [&](const std::filesystem::path& path) { bio::writeOsim(model, path); });
     }
-    addExternalLoads(externalLoads_, model, summary);
-    chooseCoordinates(simulation_, model, {trial_}, reactions_);
     summary.addInput(trial_);
     const bio::Trial trial = readTrialFile(trial_, model, simulation_,
                                            {.experimentalConditions = true, .channels = true});
@@ -80,17 +77,15 @@ class Replay : public Command {
       model = bio::discover::withExperimentalConditions(model, systemOptions(simulation_),
                                                         simulation_.coordinates, trial);
     }
-    bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
+    const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
     bio::TrialBeginning beginning =
         bio::beginningOf(trial, model, system, byName(simulation_.initial));
     bio::EmgMapping mapping;
-    if (!set_.empty()) {
+    if (!set.ofTrial.empty()) {
       bio::ParameterCatalogue::Setting setting =
-          settingOf(set_, bio::ParameterCatalogue(model, system, beginning.point));
-      model = std::move(setting.model);
+          trialSetting(set.ofTrial, bio::ParameterCatalogue(model, system, beginning.point));
       mapping = std::move(setting.mapping);
       beginning.point = std::move(setting.start);
-      system = bio::MusculoskeletalSystem(model, systemOptions(simulation_));
     }
     sayExcitations(system, summary.methods());
     bio::TrialReplay replay;
@@ -135,9 +130,8 @@ class Replay : public Command {
   std::string model_;
   std::string trial_;
   SimulationOptions simulation_;
-  std::string muscleClass_;      ///< empty: as in the model
-  std::string externalLoads_;    ///< empty: none
-  std::vector<Assignment> set_;  ///< other values of parameters
+  std::string muscleClass_;    ///< empty: as in the model
+  std::string externalLoads_;  ///< empty: none
   bool reactions_ = false;
   bool strict_ = false;
 };

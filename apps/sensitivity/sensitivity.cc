@@ -9,6 +9,7 @@
 #include "options/input_rules.h"
 #include "options/observed_channels.h"
 #include "options/parameter_list.h"
+#include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
@@ -89,8 +90,9 @@ class Sensitivity : public Command {
     checkChoice();
     OutputFolder folder(context, fileNames());
     Summary summary(context);
-    const bio::Model model = readModel(model_, summary);
+    bio::Model model = readModel(model_, summary);
     chooseCoordinates(simulation_, model, trials_, false, observe_);
+    model = withSetParameters(std::move(model), simulation_, summary);
     const bio::MusculoskeletalSystem system = movableSystem(model, model_, simulation_, summary);
     if (list_) return listParameters(context, model, system);
 

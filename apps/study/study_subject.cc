@@ -114,6 +114,8 @@ class SubjectRun {
     add("--hold-out", heldOut_);
     add("--coordinate", study_.coordinates);
     add("--lock", study_.locks);
+    add("--set", study_.sets);
+    add("--set", subject_.sets);
     if (study_.noise_deg) add("--noise-deg", {fmt::format("{:.17g}", *study_.noise_deg)});
     if (study_.step_s) add("--step", {fmt::format("{:.17g}", *study_.step_s)});
     return all;

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import pathlib
 import tempfile
 import unittest
 
@@ -78,6 +79,30 @@ class Study(AsTheProgram):
             self.assertEqual(list(known["done"]), rows)
             self.assertIsNotNone(known["done"]["s1"].calibration)
         self.assertIsNone(known["done"]["s0"])
+
+    def test_numbers_of_the_models_are_set_as_the_program_sets_them(self):
+        self.trial("t.csv", slice(0, 51))
+        head = 'parameters = ["hand.mass"]\nnoise_deg = 1.0\nstep_s = 0.01\nset = ["hand.mass=0.8"]\n'
+        file = self.study({"s0": "t.csv", "s1": "t.csv", "s2": "t.csv"}, head)
+        study = pathlib.Path(file)
+        text = study.read_text(encoding="utf-8").replace('name = "s1"', 'name = "s1"\nset = ["BRA.max_isometric_force=1000"]')
+        study.write_text(text + 'set = ["BRA.max_isometric_force=1000", "hand.weight=1"]\n', encoding="utf-8")  # of the last
+        asked = fh.read_study(file)
+        stub.check(asked, "StudyFile")
+        self.assertEqual(asked.set, ["hand.mass=0.8"])
+        self.assertEqual([one.set for one in asked.subjects], [[], ["BRA.max_isometric_force=1000"], ["BRA.max_isometric_force=1000", "hand.weight=1"]])
+        rows = fh.study(file)
+        _, out = self.run_program("study", "run", file, status=1)
+        its = {row["subject"]: row for row in self.rows(out / "estimates.csv")}
+        for row in rows[:2]:
+            estimate = row.calibration.estimates["hand.mass"]
+            self.assertEqual(estimate.model, 0.8)
+            self.assertEqual(float(its[row.subject]["model"]), 0.8)
+            self.assertAlmostEqual(estimate.value / float(its[row.subject]["estimate"]), 1, 7)
+        self.assertNotEqual(its["s0"]["estimate"], its["s1"]["estimate"])
+        self.assertEqual(rows[2].status, "failed")
+        self.assertIn("no parameter is called 'hand.weight'", rows[2].message)
+        self.assertIn("no parameter is called 'hand.weight'", self.rows(out / "study.csv")[2]["message"])
 
     def test_moments_at_coordinates_that_the_model_locks_are_fitted(self):
         self.trial("held.csv", slice(0, 101), **{"pro_sup.moment": -0.4})

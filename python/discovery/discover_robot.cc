@@ -4,7 +4,6 @@
 
 #include "arguments/columns.h"
 #include "arguments/file_name.h"
-#include "systems.h"
 #include "bio/tables/different_trials.h"
 #include "bio/tables/table_file.h"
 #include "discovery/verdict.h"
@@ -13,6 +12,7 @@
 #include "robots/robot_discovery.h"
 #include "robots/robot_recording.h"
 #include "robots/robots.h"
+#include "systems.h"
 
 namespace python {
 namespace {
@@ -130,9 +130,9 @@ py::object discoverRobot(const std::string& system, std::vector<RobotTrial> tria
   py::dict noises;
   for (std::size_t c = 0; c < channels.size(); ++c)
     noises[channels[c].name.c_str()] = data.sds()[c];
-  return results(**verdictMembers(data, result.found, result.fitted), "effects"_a = effects,
-                 "noise"_a = noises, "already_in_the_model"_a = present,
-                 "warnings"_a = all.warnings);
+  return tableResult("RobotDiscoveryResult", **verdictMembers(data, result.found, result.fitted),
+                     "effects"_a = effects, "noise"_a = noises, "already_in_the_model"_a = present,
+                     "warnings"_a = all.warnings);
 }
 
 }  // namespace

@@ -164,7 +164,7 @@ py::object listEffects(const bio::Model& model, const Names& coordinate,
                 "meaning"_a = candidate.sentence, "parameters"_a = parameters,
                 "equivalents"_a = candidate.equivalents));
   }
-  return results("effects"_a = effects, "present"_a = encompassing->present());
+  return tableResult("EffectList", "effects"_a = effects, "present"_a = encompassing->present());
 }
 
 py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
@@ -210,15 +210,15 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   py::list effects;
   for (std::size_t i = 0; i < verdict.effects.size(); ++i)
     effects.append(effectOf(data, verdict.effects[i], result.sizes[i]));
-  return results(**verdictMembers(data, found, result.fitted), "effects"_a = effects,
-                 "noise"_a = verdict.sds.sd(0), "outputs"_a = outputsOf(data, verdict),
-                 "input_correlation"_a = result.inputs.correlation,
-                 "remedies"_a = result.inputs.remedies,
-                 "position_break"_a =
-                     result.positionBreak ? py::cast(result.positionBreak->position) : py::none(),
-                 "trials_are_cut"_a = result.trialsAreCut,
-                 "planned_experiments"_a = plannedOf(data, verdict, result.experiments),
-                 "model"_a = written.model, "trials"_a = written.trials);
+  return tableResult(
+      "DiscoveryResult", **verdictMembers(data, found, result.fitted), "effects"_a = effects,
+      "noise"_a = verdict.sds.sd(0), "outputs"_a = outputsOf(data, verdict),
+      "input_correlation"_a = result.inputs.correlation, "remedies"_a = result.inputs.remedies,
+      "position_break"_a =
+          result.positionBreak ? py::cast(result.positionBreak->position) : py::none(),
+      "trials_are_cut"_a = result.trialsAreCut,
+      "planned_experiments"_a = plannedOf(data, verdict, result.experiments),
+      "model"_a = written.model, "trials"_a = written.trials);
 }
 
 }  // namespace

@@ -71,14 +71,14 @@ py::object nonparametricForceOf(const DiscoveryProblem& data, const Verdict& ver
                  "force"_a = force.force, "sd"_a = force.sd);
 }
 
-py::list fittedOf(const std::vector<info::discover::FittedNumber>& fitted) {
+py::object fittedOf(const std::vector<info::discover::FittedNumber>& fitted) {
   py::list list;
   for (const auto& one : fitted) {
     list.append(results("name"_a = one.name, "unit"_a = one.unit, "nominal"_a = one.nominal,
                         "estimate"_a = one.estimate, "sd"_a = one.sd, "prior_sd"_a = one.prior,
                         "prior_z"_a = one.priorZ));
   }
-  return list;
+  return tableOfRows(list);
 }
 
 }  // namespace

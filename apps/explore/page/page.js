@@ -107,8 +107,13 @@
     const model = models[state.model];
     let text = `fisherhill replay ${quoted(model.file)} ${quoted(trials[state.trial].files[state.model])}${data.options}`;
     text += ` --integrator ${state.integrator} --step ${state.step}`;
-    for (const i of model.parameters)
-      if (state.values[i] !== given[i]) text += ` --set ${quoted(`${data.parameters[i].name}=${state.values[i]}`)}`;
+    // what was set beside the file of the model as given is set again
+    const set = new Map(state.model === 0 ? Object.entries(data.set) : []);
+    for (const i of model.parameters) {
+      const name = data.parameters[i].name;
+      if (state.values[i] !== given[i] || set.has(name)) set.set(name, state.values[i]);
+    }
+    for (const [name, value] of set) text += ` --set ${quoted(`${name}=${value}`)}`;
     $("command").textContent = text;
   }
 

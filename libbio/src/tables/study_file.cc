@@ -35,6 +35,7 @@ class SubjectReader {
     subject.model = paths(table, "model", {*table.text("model")}).front();
     subject.train = paths(table, "train", table.texts("train"));
     subject.heldOut = paths(table, "hold_out", table.texts("hold_out"));
+    subject.sets = table.texts("set");
     bool hasTraining = !subject.train.empty();
     for (TomlTable& one : table.tables("recording")) {
       StudyRecording recording;
@@ -89,6 +90,7 @@ StudyFile readStudy(const std::string& file) {
   study.without = table.texts("without");
   study.coordinates = table.texts("coordinates");
   study.locks = table.texts("lock");
+  study.sets = table.texts("set");
   SubjectReader reader(fs::path(file).parent_path());
   std::vector<TomlTable> subjects = table.tables("subject");
   table.finish();

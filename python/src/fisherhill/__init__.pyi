@@ -10,14 +10,16 @@ argument of a wrong type or name raises TypeError. Long computations can be inte
 (KeyboardInterrupt), and other threads run meanwhile.
 
 What functions return is a types.SimpleNamespace; its members are those of the classes below that
-are marked `type_check_only`, which exist for type checkers alone.
+are marked `type_check_only`, which exist for type checkers alone. Those that are tables have
+to_dataframe() (pandas) and show themselves in notebooks, many of them also have plot()
+(matplotlib); lists of results are tables as well.
 """
 
 # The docstrings of the compiled module are made from this file (python/docstrings.py).
 
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
-from typing import Any, Literal, Protocol, TypeAlias, type_check_only
+from typing import Any, Literal, Protocol, TypeAlias, TypeVar, type_check_only
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -78,6 +80,50 @@ class _DataFrame(Protocol):  # of pandas, and what is like it
 
 _Columns: TypeAlias = Mapping[str, ArrayLike] | _DataFrame
 
+# Tables -------------------------------------------------------------------------------------------
+
+_Row = TypeVar("_Row")
+
+@type_check_only
+class _Table:
+    def to_dataframe(self) -> Any:
+        """The result as a DataFrame of pandas, its rows named by the first column.
+
+        Raises
+        ------
+        ImportError
+            Without pandas (apt-get install python3-pandas).
+        """
+
+    def _repr_html_(self) -> str:
+        """The first rows as HTML, for notebooks."""
+
+@type_check_only
+class _Plotted(_Table):
+    def plot(self, axes: Any = None) -> Any:
+        """Draws what the result is about.
+
+        Parameters
+        ----------
+        axes : matplotlib axes, or a list of them where there are several panels
+            Default: of a new figure.
+
+        Returns
+        -------
+        The axes.
+
+        Raises
+        ------
+        ImportError
+            Without matplotlib (apt-get install python3-matplotlib).
+        """
+
+@type_check_only
+class _Rows(list[_Row], _Table): ...
+
+@type_check_only
+class _PlottedRows(list[_Row], _Plotted): ...
+
 # Models and trials --------------------------------------------------------------------------------
 
 @type_check_only
@@ -109,7 +155,7 @@ class Model:
     def remarks(self) -> list[str]:
         """What the file contains but is interpreted differently, one line each."""
 
-    def review(self) -> list[Remark]:
+    def review(self) -> _Rows[Remark]:
         """Unusual numbers of the model, as check lists them beside warnings and remarks.
 
         Returns
@@ -180,6 +226,49 @@ class Model:
             For an unknown name, or an ellipsoid without two equal semi-axes.
         """
 
+    def with_parameters(
+        self,
+        values: Mapping[str, float] | None = None,
+        *,
+        coordinate: str | Sequence[str] = [],
+        lock: dict[str, float] = {},
+        **named: float,
+    ) -> Model:
+        """The model with other values of some of its parameters, as --set of the program takes them.
+
+        What is estimated with it starts at these values and has the means of its priors there. The
+        model itself stays as it is.
+
+        Parameters
+        ----------
+        values : mapping
+            {name: value} in SI units and radians, as {'TRI.radius': 0.018}. Names are those that
+            list_parameters lists; a name may also be an argument of its own, as in
+            with_parameters(**{'TRI.radius': 0.018}).
+        coordinate, lock
+            As in replay; only muscles that move a free coordinate have parameters. Without a
+            coordinate all are free that the model does not lock.
+
+        Returns
+        -------
+        Model
+
+        Raises
+        ------
+        ValueError
+            For an unknown name, with the nearest ones; one given twice, or two that set the same
+            number; a value that breaks a rule; emg.… and initial.…, which belong to a trial.
+        TypeError
+            For a value that is not a number.
+
+        Examples
+        --------
+        >>> model = fisherhill.load_model("models/elbow8.osim")
+        >>> thicker = model.with_parameters({"TRI.radius": 0.018})
+        >>> [one.value for one in fisherhill.list_parameters(thicker) if one.name == "TRI.radius"]
+        [0.018]
+        """
+
     def with_external_loads(self, file: _File) -> Model:
         """The model with forces and torques on bodies, which replay, comparisons and ensemble simulate.
 
@@ -244,7 +333,7 @@ class Trial:
     def warnings(self) -> list[str]:
         """Remarks on the columns, one line each."""
 
-    def review(self, model: Model) -> list[Remark]:
+    def review(self, model: Model) -> _Rows[Remark]:
         """Unusual numbers of the trial, as check lists them beside warnings.
 
         Parameters
@@ -273,6 +362,14 @@ def load_model(file: _File) -> Model:
     ------
     ValueError
         If the file cannot be read, is not a model, or breaks a rule; the line names file and element.
+
+    Examples
+    --------
+    >>> model = fisherhill.load_model("models/elbow8.osim")
+    >>> model
+    <fisherhill.Model 'elbow8', 8 muscles>
+    >>> "elbow_flexion" in model.coordinates
+    True
     """
 
 def load_trial(
@@ -312,6 +409,14 @@ def load_trial(
     ------
     ValueError
         If the file cannot be read or breaks a rule; the line names file, column and row.
+
+    Examples
+    --------
+    >>> model = fisherhill.load_model("models/elbow8.osim")
+    >>> trial = fisherhill.load_trial("emg_data/curl_slow.sto", model)
+    >>> trial.muscles[:3]
+    ['TRIlong', 'TRIlat', 'TRImed']
+    >>> times, angle = trial.measured["elbow_flexion"]
     """
 
 def make_trial(
@@ -361,6 +466,14 @@ def make_trial(
     ------
     ValueError
         If columns differ in length or break a rule of a file's columns.
+
+    Examples
+    --------
+    >>> model = fisherhill.load_model("models/elbow8.osim")
+    >>> times = np.linspace(0, 1, 11)
+    >>> held = fisherhill.make_trial(model, {"time": times, "BRA": np.full(11, 0.2)}, ignore_extra=True)
+    >>> held.excitations.shape
+    (11, 8)
     """
 
 # Recordings ---------------------------------------------------------------------------------------
@@ -379,7 +492,7 @@ class EmgElectrode:
     excitation: _Array
 
 @type_check_only
-class EmgResult:
+class EmgResult(_Plotted):
     columns: dict[str, _Array]
     muscles: list[str]
     electrodes: dict[str, EmgElectrode]
@@ -501,7 +614,7 @@ def read_recording(file: _File) -> RecordedFile:
 # Muscles ------------------------------------------------------------------------------------------
 
 @type_check_only
-class MuscleStatesResult:
+class MuscleStatesResult(_Table):
     muscle_class: list[str]
     fibre_velocity: _Array
     tendon_force: _Array
@@ -538,7 +651,7 @@ def muscle_states(file: _File) -> MuscleStatesResult:
 # Replay -------------------------------------------------------------------------------------------
 
 @type_check_only
-class ReplayResult:
+class ReplayResult(_Plotted):
     time: _Array
     coordinates: list[str]
     muscles: list[str]
@@ -644,12 +757,22 @@ def replay(
     RuntimeError
         If a muscle has no static equilibrium at the start, or with strict for a motion that leaves the
         range.
+
+    Examples
+    --------
+    >>> model = fisherhill.load_model("models/elbow8.osim")
+    >>> trial = fisherhill.load_trial("emg_data/curl_slow.sto", model)
+    >>> motion = fisherhill.replay(model, trial)
+    >>> motion.outcome, round(float(np.degrees(motion.rms_error["elbow_flexion"])), 1)
+    ('ok', 12.0)
+    >>> motion.q.shape, motion.tendon_force.shape
+    ((451, 1), (451, 8))
     """
 
 # Paths --------------------------------------------------------------------------------------------
 
 @type_check_only
-class MomentArmsResult:
+class MomentArmsResult(_Table):
     muscles: list[str]
     length: _Array
     moment_arm: dict[str, _Array]
@@ -695,6 +818,14 @@ def moment_arms(
     ------
     ValueError
         For an unknown coordinate, columns of different lengths, or values that are not finite.
+
+    Examples
+    --------
+    >>> model = fisherhill.load_model("models/elbow8.osim")
+    >>> arms = fisherhill.moment_arms(model, {"elbow_flexion": np.radians([30, 90])})
+    >>> bra = arms.muscles.index("BRA")
+    >>> [round(1000 * float(arm), 1) for arm in arms.moment_arm["elbow_flexion"][:, bra]]  # mm
+    [12.3, 22.7]
     """
 
 @type_check_only
@@ -707,7 +838,7 @@ class LengthJump:
     conditional: bool
     text: str
 
-def length_jumps(model: Model) -> list[LengthJump]:
+def length_jumps(model: Model) -> _Rows[LengthJump]:
     """Where lengths and moment arms of muscles jump, along each coordinate that is not locked or coupled.
 
     Other coordinates are at their default values; 720 steps over the range and 0.3 rad or m beyond.
@@ -745,7 +876,7 @@ class OpenSimDifference:
     jumps: list[tuple[float, float]]
     text: str
 
-def opensim_differences(model: Model) -> list[OpenSimDifference]:
+def opensim_differences(model: Model) -> _Rows[OpenSimDifference]:
     """Where OpenSim's paths over ellipsoids differ from taut strings, by OpenSim's rule restated.
 
     Parameters
@@ -859,7 +990,7 @@ def list_parameters(
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
     step: float | None = None,
-) -> list[ModelParameter]:
+) -> _Rows[ModelParameter]:
     """Lists the parameters of the model that affect the motion.
 
     Parameters
@@ -892,6 +1023,13 @@ def list_parameters(
     ------
     ValueError
         For an unknown coordinate.
+
+    Examples
+    --------
+    >>> model = fisherhill.load_model("models/elbow8.osim")
+    >>> radius = next(one for one in fisherhill.list_parameters(model) if one.name == "TRI.radius")
+    >>> radius.value, radius.unit
+    (0.016, 'm')
     """
 
 @type_check_only
@@ -905,7 +1043,7 @@ class FurtherChannel:
     bound_after: float
 
 @type_check_only
-class SensitivityResult:
+class SensitivityResult(_Plotted):
     names: list[str]
     units: list[str]
     values: _Array
@@ -1016,10 +1154,20 @@ def sensitivity(
         For no trial, an unknown parameter (with the nearest names), a channel that cannot be measured of
         the model, a noise that is not > 0, a trial with known_mass_in_hand or known_arm_turn, or a
         simulation that does not reach the end of a trial.
+
+    Examples
+    --------
+    >>> model = fisherhill.load_model("models/elbow8.osim")
+    >>> trial = fisherhill.load_trial("emg_data/curl_slow.sto", model)
+    >>> told = fisherhill.sensitivity(model, [trial], ["TRI.radius", "hand.mass"], noise=np.radians(1))
+    >>> told.identifiable
+    [True, True]
+    >>> bool(told.bound_joint[0] < 0.001)  # the radius to less than a millimetre
+    True
     """
 
 @type_check_only
-class ParameterSweepResult:
+class ParameterSweepResult(_Plotted):
     parameter: str
     unit: str
     model_value: float
@@ -1080,7 +1228,7 @@ def parameter_sweep(
     """
 
 @type_check_only
-class ProfileLikelihoodResult:
+class ProfileLikelihoodResult(_Plotted):
     parameter: str
     unit: str
     values: _Array
@@ -1167,7 +1315,7 @@ class SobolResult:
     undefined: int
 
 @type_check_only
-class GlobalSensitivityResult:
+class GlobalSensitivityResult(_Plotted):
     names: list[str]
     morris: MorrisResult | None
     sobol: SobolResult | None
@@ -1240,7 +1388,7 @@ def global_sensitivity(
     """
 
 @type_check_only
-class CostGradientResult:
+class CostGradientResult(_Table):
     names: list[str]
     units: list[str]
     values: _Array
@@ -1370,7 +1518,7 @@ class EnsembleChannel:
     left_range: int
 
 @type_check_only
-class EnsembleResult:
+class EnsembleResult(_Plotted):
     coordinate: str
     laws: list[ParameterLaw]
     parameters: _Array
@@ -1517,6 +1665,16 @@ def ensemble(
         'rms_error' without a measurement, a channel that cannot be observed or is given twice, a trial
         with known_mass_in_hand or known_arm_turn, or a model whose own motion does not reach the end of
         the trial.
+
+    Examples
+    --------
+    >>> model = fisherhill.load_model("models/elbow8.osim")
+    >>> trial = fisherhill.load_trial("emg_data/curl_slow.sto", model)
+    >>> drawn = fisherhill.ensemble(model, trial, parameters=["hand.mass"], draws=4, seed=1)
+    >>> drawn.outcome
+    ['ok', 'ok', 'ok', 'ok']
+    >>> drawn.parameters.shape
+    (4, 1)
     """
 
 # Comparisons --------------------------------------------------------------------------------------
@@ -1565,7 +1723,7 @@ class ObservedOrder:
     errors: _Array
 
 @type_check_only
-class CompareResult:
+class CompareResult(_Plotted):
     coordinates: list[str]
     reference: ConvergedReference
     runs: list[IntegratorRun]
@@ -1679,6 +1837,14 @@ def compare(
         For an unknown integrator or one listed twice, steps that do not rise, no free rotation, a
         motion of `also` without the coordinate or at other times, or a trial with known_mass_in_hand or
         known_arm_turn.
+
+    Examples
+    --------
+    >>> model = fisherhill.load_model("models/elbow8.osim")
+    >>> trial = fisherhill.load_trial("emg_data/curl_slow.sto", model)
+    >>> found = fisherhill.compare(model, trial, integrators=["vi"], steps=[0.01], timings=1)
+    >>> found.reference.status, found.runs[0].outcome
+    ('confirmed', 'ok')
     """
 
 @type_check_only
@@ -1716,7 +1882,7 @@ def compare_muscles(
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
     step: float | None = None,
-) -> list[MuscleClassMotion]:
+) -> _Rows[MuscleClassMotion]:
     """What the class of a model's muscles changes in a motion, all their shared numbers being equal.
 
     Parameters
@@ -1810,7 +1976,7 @@ class HeldOutPrediction:
     share_of_samples_held: float
 
 @type_check_only
-class CalibrationResult:
+class CalibrationResult(_Plotted):
     estimates: dict[str, ParameterEstimate]
     correlation: _Array
     other_minima: list[OtherMinimum]
@@ -1824,7 +1990,7 @@ class CalibrationResult:
     rmse_after: float
     rmse_held_out_before: float
     rmse_held_out: float
-    held_out_predictions: list[HeldOutPrediction]
+    held_out_predictions: _Rows[HeldOutPrediction]
     model: Model | None
 
 def calibrate(
@@ -1841,6 +2007,7 @@ def calibrate(
     loss: Literal["gaussian", "huber", "student"] = "gaussian",
     own_start: bool = False,
     latent: dict[str, tuple[float, float]] = {},
+    initial: dict[str, float] = {},
     starts: int = 1,
     seed: int = 1,
     threads: int = 1,
@@ -1881,6 +2048,8 @@ def calibrate(
         {muscle: (sd, seconds)}: excitations of muscles without an electrode are estimated about
         the trials' columns, sd being the prior of the log-odds at knots at most so far apart;
         instead of what the trials' headers say. Held-out trials are predicted without.
+    initial : dict
+        {coordinate: value [rad] or [m]} at the start of every trial, at rest; default: as in replay.
     starts : int
         Number of optimiser starts; the first is the model's own values.
     seed : int
@@ -1962,6 +2131,16 @@ def calibrate(
         for estimation (by its content), or an option out of range.
     RuntimeError
         If no estimate is possible, with the reason.
+
+    Examples
+    --------
+    >>> model = fisherhill.load_model("models/elbow8.osim")
+    >>> trial = fisherhill.load_trial("emg_data/curl_slow.sto", model)
+    >>> fit = fisherhill.calibrate(model, [trial], ["hand.mass"], step=0.02)
+    >>> fit.converged, round(fit.estimates["hand.mass"].value, 2)
+    (True, 0.76)
+    >>> fit.rmse_after < fit.rmse_before
+    True
     """
 
 # Design of experiments ----------------------------------------------------------------------------
@@ -1975,7 +2154,7 @@ class DesignMonteCarlo:
     trials: int
 
 @type_check_only
-class DesignResult:
+class DesignResult(_Plotted):
     improved: bool
     names: list[str]
     units: list[str]
@@ -2287,7 +2466,7 @@ class DynamometerExperiment:
     trial: Trial
 
 @type_check_only
-class DynamometerDesignResult:
+class DynamometerDesignResult(_Table):
     names: list[str]
     units: list[str]
     bound_before: _Array
@@ -2522,7 +2701,7 @@ class FittedParameter:
     prior_z: float
 
 @type_check_only
-class DiscoveryResult:
+class DiscoveryResult(_Plotted):
     verdict: Literal["named", "ambiguous", "parameter", "none", "unknown", "numerical"]
     sentence: str
     effects: list[Effect]
@@ -2544,7 +2723,7 @@ class DiscoveryResult:
     force_without_a_name: NonparametricForce | None
     model: Model | None
     trials: list[DiscoveryTrial]
-    fitted_parameters: list[FittedParameter]
+    fitted_parameters: _Rows[FittedParameter]
     step: float
     fits: int
 
@@ -2760,7 +2939,7 @@ class ListedEffect:
     equivalents: list[str]
 
 @type_check_only
-class EffectList:
+class EffectList(_Table):
     effects: list[ListedEffect]
     present: dict[str, str]
 
@@ -2816,7 +2995,7 @@ class RobotEffect:
     cannot_be_told_from: list[str]
 
 @type_check_only
-class RobotDiscoveryResult:
+class RobotDiscoveryResult(_Plotted):
     verdict: Literal["named", "ambiguous", "parameter", "none", "unknown", "numerical"]
     sentence: str
     effects: list[RobotEffect]
@@ -2830,7 +3009,7 @@ class RobotDiscoveryResult:
     undetectable_below: dict[str, float]
     unknown: UnknownForce | None
     force_without_a_name: NonparametricForce | None
-    fitted_parameters: list[FittedParameter]
+    fitted_parameters: _Rows[FittedParameter]
     already_in_the_model: list[str]
     warnings: list[str]
     step: float
@@ -2935,6 +3114,7 @@ class StudySubject:
     train: list[str]
     hold_out: list[str]
     recordings: list[StudyRecording]
+    set: list[str]
 
 @type_check_only
 class StudyFile:
@@ -2949,6 +3129,7 @@ class StudyFile:
     without: list[str]
     coordinates: list[str]
     lock: list[str]
+    set: list[str]
     step: float | None
     subjects: list[StudySubject]
 
@@ -2972,8 +3153,8 @@ def read_study(file: _File) -> StudyFile:
     discover : bool
         Whether a missing effect is looked for.
     max_effects : int
-    without, coordinates, lock : list of str
-        As the program takes them, e.g. lock 'shoulder_elv=30deg'.
+    without, coordinates, lock, set : list of str
+        As the program takes them, e.g. lock 'shoulder_elv=30deg', set 'TRI.radius=0.018'.
     step : float or None
         [s]
     subjects : list
@@ -2984,6 +3165,8 @@ def read_study(file: _File) -> StudyFile:
             Trials.
         recordings : list
             Of raw EMG, of which trials are made: file, config, and held_out.
+        set : list of str
+            Numbers of its model, beside those of the study.
 
     Raises
     ------
@@ -3018,7 +3201,7 @@ def study(
     each: Callable[[StudyRow], object] | None = None,
     seed: int = 1,
     threads: int = 1,
-) -> list[StudyRow]:
+) -> _PlottedRows[StudyRow]:
     """Carries the subjects of a study through emg, calibrate with its held-out test, and discover.
 
     What cannot be carried out for a subject is the status and message of its row and does not stop
@@ -3624,6 +3807,13 @@ def fisher_information(gamma: ArrayLike, noise: ArrayLike, *, outputs: int = 1) 
     ------
     ValueError
         For shapes that do not fit, a noise that is not > 0, or values that are not finite.
+
+    Examples
+    --------
+    >>> gamma = np.array([[1.0, 0.0], [1.0, 1.0], [1.0, 2.0]])  # of a line: offset and slope
+    >>> fisherhill.fisher_information(gamma, noise=0.5)
+    array([[12., 12.],
+           [12., 20.]])
     """
 
 def cramer_rao_bound(information: ArrayLike, names: Sequence[str] = []) -> _Array:
@@ -3645,10 +3835,18 @@ def cramer_rao_bound(information: ArrayLike, names: Sequence[str] = []) -> _Arra
     ValueError
         If the matrix is not symmetric but for rounding, or if there is no information about a parameter
         or a combination of parameters, which it names.
+
+    Examples
+    --------
+    >>> fisherhill.cramer_rao_bound([[4.0, 0.0], [0.0, 100.0]])
+    array([[0.25, 0.  ],
+           [0.  , 0.01]])
     """
 
 @type_check_only
-class IdentifiabilityResult:
+class IdentifiabilityResult(_Plotted):
+    names: list[str]
+    values: _Array
     rank: int
     sentences: list[str]
     sd: _Array
@@ -3671,6 +3869,9 @@ def identifiability(
 
     Returns
     -------
+    names : list of str
+    values : array, parameters
+        As they were given.
     rank : int
         Number of combinations that are determined.
     sentences : list of str
@@ -3686,10 +3887,18 @@ def identifiability(
     ValueError
         For sizes that do not fit, or an information that is not finite or not symmetric but for
         rounding.
+
+    Examples
+    --------
+    >>> told = fisherhill.identifiability([[1.0, 1.0], [1.0, 1.0]], [2.0, 3.0], ["a", "b"])
+    >>> told.rank
+    1
+    >>> told.determined
+    ['a²·b³']
     """
 
 @type_check_only
-class EstimateResult:
+class EstimateResult(_Table):
     parameters: _Array
     names: list[str]
     converged: bool
@@ -3773,4 +3982,11 @@ def estimate(
         For shapes that do not fit, an unknown name or method, an option out of range, a prediction at
         the start that is not finite, or a parameter without prior that changes no prediction there.
         What `predict` raises comes back unchanged.
+
+    Examples
+    --------
+    >>> x = np.array([0.0, 1.0, 2.0])
+    >>> found = fisherhill.estimate(lambda p: p[0] + p[1] * x, [1.0, 3.0, 5.0], 0.1, [0.0, 0.0], names=["offset", "slope"])
+    >>> [round(float(one), 6) for one in found.parameters]
+    [1.0, 2.0]
     """

@@ -8,6 +8,7 @@ import tempfile
 from types import SimpleNamespace
 
 from . import _fisherhill as fh
+from ._results import StudyRows
 
 
 class _StageFailure(Exception):
@@ -22,8 +23,8 @@ def _stage(name):
         raise _StageFailure(f"{name}: {error}") from error
 
 
-def _angle(text):
-    """[rad] of '30deg', '0.5rad' or '0.5'; lengths are plain numbers [m]."""
+def _angle(text, key):
+    """[rad] of '30deg', '0.5rad' or '0.5'; all else are plain numbers [m]."""
     unit = math.pi / 180 if text.endswith("deg") else 1.0
     number = text[:-3] if text.endswith(("deg", "rad")) else text
     try:
@@ -31,20 +32,21 @@ def _angle(text):
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise ValueError(f"lock: '{text}' is not an angle: write 34deg, or 0.59 for radians")
+        raise ValueError(f"{key}: '{text}' is not an angle: write 34deg, or 0.59 for radians")
     return value
 
 
-def _locks(texts):
-    locks = {}
+def _assigned(texts, key):
+    """{name: value} of NAME=VALUE, as a key of the file lists them."""
+    values = {}
     for text in texts:
         name, equals, value = text.partition("=")
         if not name or not equals:
-            raise ValueError(f"lock: '{text}' is not NAME=VALUE")
-        if name in locks:
-            raise ValueError(f"lock: '{name}' is given twice")
-        locks[name] = _angle(value)
-    return locks
+            raise ValueError(f"{key}: '{text}' is not NAME=VALUE")
+        if name in values:
+            raise ValueError(f"{key}: '{name}' is given twice")
+        values[name] = _angle(value, key)
+    return values
 
 
 def _of_one_trial(name):
@@ -77,7 +79,9 @@ def _inputs(study, subject, files, moments):
     moments: whether the moments at locked coordinates are among the data.
     """
     model = fh.load_model(subject.model)
-    locks = _locks(study.lock)
+    locks = _assigned(study.lock, "lock")
+    if numbers := _assigned([*study.set, *subject.set], "set"):
+        model = model.with_parameters(numbers, lock=locks)
     held = {}
     if moments:
         held = fh._held(model, [fh.load_trial(file, model) for file in files[0]], study.coordinates, locks)
@@ -176,7 +180,7 @@ def _asked(plan, names):
 
 def study(file, *, subjects=None, each=None, seed=1, threads=1):
     plan = fh.read_study(file)
-    rows = []
+    rows = StudyRows()
     for subject in _asked(plan, subjects):
         rows.append(_row(plan, subject, seed, threads))
         if each is not None:

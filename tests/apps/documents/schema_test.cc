@@ -160,7 +160,16 @@ const Run runs[] = {
     {"Sensitivity", {"sensitivity", model, slow, "--parameters", "TRI.radius,hand.mass"}},
     {"SensitivityWithASweep",
      {"sensitivity", model, slow, "--parameter", "TRI.radius", "--values", "0.015,0.016"}},
+    {"CalibrateWithSet",
+     {"calibrate", model, slow, "--parameters", "hand.mass", "--set", "TRI.radius=0.017"}},
+    {"CheckWithSet", {"check", model, "--set", "TRI.radius=0.017"}},
+    {"DesignWithSet",
+     {"design", model, slow, "--parameters", "TRI.radius", "--candidates", "4", "--generations",
+      "1", "--set", "TRI.radius=0.017"}},
+    {"MomentArmsWithSet", {"moment-arms", model, "--points", "3", "--set", "TRI.radius=0.017"}},
+    {"ReplayWithSet", {"replay", model, slow, "--set", "TRIlong.pennation=10deg"}},
 };
+
 INSTANTIATE_TEST_SUITE_P(Commands, SummarySchema, testing::ValuesIn(runs),
                          [](const auto& run) { return run.param.name; });
 

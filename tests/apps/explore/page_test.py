@@ -86,15 +86,15 @@ def keeps_to_itself(browser, case):
     assert refused and all("127.0.0.1:1" in line for line in refused), refused
 
 
-def tells_the_command(browser, case):
-    """The command line below the page gives the page's own motion."""
-    browser.open(case.page("command"))
+def tells_the_command(browser, case, sets):
+    """The command line below the page gives the page's own motion; it sets so many numbers."""
+    browser.open(case.page(f"command_{sets}"))
     assert browser.wait("document.body.dataset.ready === 'yes'"), browser.log()
     words = browser.run("""const name = JSON.parse(document.getElementById('data').textContent).parameters[1].name;
         await window.explore.set({[name]: window.explore.state.values[1] * 1.02});
         return document.getElementById('command').textContent;""")
-    assert words.startswith("fisherhill replay ") and words.count("--set ") == 1, words
-    out = case.folder / "told"
+    assert words.startswith("fisherhill replay ") and words.count("--set ") == sets, words
+    out = case.folder / f"told_{sets}"
     run = subprocess.run(words.replace("fisherhill", str(case.program), 1) + f" --out {out}", shell=True,
                          capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
@@ -150,7 +150,11 @@ def main():
         difference = simulates_as_the_program(browser, elbow, settings, 1)
         print(f"largest difference over {settings} settings: {difference:.3g} rad")
         assert difference <= 1e-9, difference
-        tells_the_command(browser, elbow)
+        tells_the_command(browser, elbow, 1)
+        # also with numbers that are set from the start, one with a slider and one without
+        numbers = "--set", "BRA.optimal_fiber_length=0.09", "--set", "TRImed.pennation_angle=0.1"
+        more = "--parameters", "BRA.optimal_fiber_length,hand.mass"
+        tells_the_command(browser, Case(program, folder, elbow.model, elbow.trial, *numbers, *more), 3)
         trial = folder / "<img src=x onerror='window.bad=1'>.sto"
         trial.write_bytes(elbow.trial.read_bytes())
         keeps_to_itself(browser, Case(program, folder, elbow.model, trial))

@@ -17,6 +17,7 @@ struct StudySubject {
   std::string model;                        ///< path as it can be opened
   std::vector<std::string> train, heldOut;  ///< trials, likewise
   std::vector<StudyRecording> recordings;
+  std::vector<std::string> sets;  ///< numbers of its model, NAME=VALUE
 };
 
 /// Subjects with their models and trials, and what is to be estimated from them;
@@ -31,6 +32,7 @@ struct StudyFile {
   int maxEffects = 3;
   std::vector<std::string> without;  ///< effects left out of the catalogue
   std::vector<std::string> coordinates, locks;
+  std::vector<std::string> sets;  ///< numbers of every model, NAME=VALUE
   std::optional<double> step_s;
   std::vector<StudySubject> subjects;
 };
