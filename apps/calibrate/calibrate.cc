@@ -167,9 +167,13 @@ class Calibrate : public Command {
           bio::calibratedModel(*found.training, found.heldOut.get(), systemOptions(simulation_),
                                found.options.trials.simulation, calibration);
     }
-    const CalibrateFindings findings{
-        model_,        *found.training, found.heldOut.get(),
-        found.options, calibration,     calibrated ? &*calibrated : nullptr};
+    const CalibrateFindings findings{model_,
+                                     model,
+                                     *found.training,
+                                     found.heldOut.get(),
+                                     found.options,
+                                     calibration,
+                                     calibrated ? &*calibrated : nullptr};
     tellCalibrate(findings, summary);
     tellSteps(typed.trials.simulation.step, found, summary);
     sayModel(model, found.training->system(), summary.methods());

@@ -12,6 +12,7 @@ namespace app {
 /// A calibration with its inputs.
 struct CalibrateFindings {
   const std::string& modelFile;
+  const bio::Model& model;  ///< as it was given
   const bio::TrialSet& training;
   const bio::TrialSet* heldOut;  ///< null: none
   const bio::CalibrationOptions& options;

@@ -121,8 +121,9 @@ class Replay : public Command {
       bio::writeTable(bio::forcesTable(system, motion, muscles), path);
     });
 
-    const ReplayFindings findings{model_, trial_,  model, trial, system,
-                                  replay, muscles, left,  effect};
+    const std::vector<std::string> wrapAsCylinder = systemOptions(simulation_).wrapAsCylinder;
+    const ReplayFindings findings{model_, trial_,  model, trial,  system,
+                                  replay, muscles, left,  effect, wrapAsCylinder};
     summary.setSimulation(simulation_.integrator, replay.options.step, replay.options.duration,
                           motion.wallSeconds);
     tellReplay(findings, summary);
