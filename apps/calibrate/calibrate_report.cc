@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "bio/model/units.h"
-#include "calibrate/calibrate_playback.h"
 #include "calibrate/calibrate_tables.h"
 #include "calibrate/held_out_prediction.h"
 #include "calibrate/latent_excitations.h"
@@ -339,7 +338,7 @@ Report calibrateReport(const CalibrateFindings& f) {
   report.mainFigure = f.heldOut
                           ? overlay(*f.heldOut, 0, c.heldOutBefore, c.heldOutAfter, "held out")
                           : overlay(f.training, 0, c.before, c.after, "calibration");
-  if (auto playback = calibratePlayback(f)) report.details.push_back(*std::move(playback));
+  if (f.playback) report.details.push_back(*f.playback);
   if (f.heldOut) {
     report.details.push_back(
         Section{"Held-out trials",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct CalibrateFindings {
   const bio::CalibrationOptions& options;
   const bio::Calibration& calibration;
   const bio::CalibratedModel* calibrated;  ///< null: no estimate
+  std::optional<Playback> playback = {};
 };
 
 /// RMS error of a prediction [deg].

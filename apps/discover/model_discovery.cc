@@ -218,7 +218,7 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
       excitationFigures(trials.front(),
                         request.heldOut.empty() ? nullptr : &trials[request.trials.size()],
                         compiled),
-      discoverPlayback(toWrite, written, model)};
+      request.plays && folder.active() ? discoverPlayback(toWrite, written, model) : std::nullopt};
   summary.setSimulation(request.simulation.integrator, found.step, longestDuration(trials),
                         found.wallSeconds);
   sayModel(model, compiled, summary.methods());

@@ -134,7 +134,8 @@ class Maker {
     for (std::size_t t = 0; t < trials_.size(); ++t) {
       double more = 0;
       for (const PlayedMotion& one : trials_[t].motions) {
-        more += packedFrames(framesOf(one, 1))["data"].get_ref<const std::string&>().size();
+        more += static_cast<double>(
+            packedFrames(framesOf(one, 1))["data"].get_ref<const std::string&>().size());
         longest = std::max(longest, one.motion.time.back() - one.motion.time.front());
       }
       if (t > 0 && (bytes + more) * fewestFrames > mostBytes) {
@@ -154,7 +155,10 @@ class Maker {
       std::vector<PlayedFrame> frames = framesOf(one, count);
       for (const PlayedFrame& frame : frames) {
         for (const PlayedLine& line : frame.lines) {
-          if (std::isnan(line.activation)) continue;
+          if (std::isnan(line.activation)) {
+            hasGrey_ = hasGrey_ || !line.points.empty();
+            continue;
+          }
           hasMuscles_ = true;
           largest_ = std::max(largest_, line.activation);
         }
@@ -243,10 +247,15 @@ class Maker {
     std::string text;
     if (hasMuscles_)
       text += fmt::format(
-          "Muscles are coloured by activation, from 0 to {:.2f}, and as thick as their tendon "
-          "force. ",
+          "Muscles are coloured by activation, from 0 to {:.2f}, and thicker where the tendon "
+          "force is larger. ",
           largest);
-    if (hasGhost_) text += "The translucent ghost is the measured posture. ";
+    if (hasGrey_)
+      text +=
+          "What is grey has no activation: muscles that no free coordinate moves, ligaments and "
+          "springs. ";
+    if (hasGhost_)
+      text += "The translucent ghost is the measured posture; where it is not seen, both agree. ";
     if (!unmeasured_.empty()) {
       text +=
           "There is no ghost of the measured posture, since not every free coordinate was "
@@ -268,7 +277,7 @@ class Maker {
   std::size_t numTrials_ = 0;
   std::map<const bio::MusculoskeletalSystem*, std::unique_ptr<DrawnModel>> models_;
   Json modelsJson_ = Json::array();
-  bool hasMuscles_ = false, hasWraps_ = false, hasGhost_ = false;
+  bool hasMuscles_ = false, hasGrey_ = false, hasWraps_ = false, hasGhost_ = false;
   std::vector<std::string> unmeasured_;
   double largest_ = 0;
   std::vector<PlayedFrame> firstFrames_;  ///< of the motion shown first

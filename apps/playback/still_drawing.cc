@@ -88,13 +88,16 @@ std::string stillDrawing(const PlayedFrame& frame, const std::vector<bio::view::
     for (const auto& [centre, radius] : shapes[i].joints)
       strokes.push_back({{seen(centre), seen(centre)}, 2 * radius, "#c9bfa5"});
   }
-  for (const PlayedLine& line : frame.lines) {
-    if (line.points.empty()) continue;
-    Stroke& stroke = strokes.emplace_back();
-    stroke.width = 2 * line.radius;
-    stroke.colour = activationColour(line.activation / largest);
-    for (const Eigen::Vector3d& point : line.points)
-      stroke.points.push_back(viewpoint.onScreen(point));
+  // what is grey behind what is not, and thinner
+  for (const bool isGrey : {true, false}) {
+    for (const PlayedLine& line : frame.lines) {
+      if (line.points.empty() || std::isnan(line.activation) != isGrey) continue;
+      Stroke& stroke = strokes.emplace_back();
+      stroke.width = (isGrey ? 0.8 : 1.6) * line.radius;
+      stroke.colour = activationColour(line.activation / largest);
+      for (const Eigen::Vector3d& point : line.points)
+        stroke.points.push_back(viewpoint.onScreen(point));
+    }
   }
   Eigen::AlignedBox2d box;
   for (const Stroke& stroke : strokes) {

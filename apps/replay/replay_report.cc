@@ -10,7 +10,6 @@
 #include "bio/simulation/integrator_names.h"
 #include "options/excitation_figure.h"
 #include "output/text.h"
-#include "playback/playback.h"
 
 namespace app {
 namespace {
@@ -271,12 +270,7 @@ Report replayReport(const ReplayFindings& f) {
     figures.insert(first ? figures.begin() : figures.end(), motionFigure(f, i));
   }
   report.mainFigure = std::move(figures.front());
-  if (auto playback =
-          playbackOf("The motion in three dimensions",
-                     {{f.trialFile, &f.trial, {{"simulated", f.model, f.system, f.replay.motion}}}},
-                     f.wrapAsCylinder)) {
-    report.details.push_back(*std::move(playback));
-  }
+  if (f.playback) report.details.push_back(*f.playback);
   for (std::size_t i = 1; i < figures.size(); ++i) report.details.push_back(std::move(figures[i]));
   for (const bool ofRotations : {true, false}) {
     Figure figure = reactionFigure(f, ofRotations);

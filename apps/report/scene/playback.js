@@ -110,6 +110,7 @@
   class Playback {
     constructor(figure, data) {
       Object.assign(this, { data, trial: 0, motions: new Map() });
+      data.models.forEach(model => { model.shapes = new Float64Array(model.shapes); });
       this.canvas = element("canvas", { tabIndex: 0 });
       this.canvas.setAttribute("role", "img");
       this.canvas.setAttribute("aria-label", `${data.description} Drag or arrow keys turn the view, + and − zoom.`);
@@ -216,11 +217,11 @@
       const { motions } = trials[this.trial];
       const shown = Number(this.shown.select.value), ghost = this.ghost.select.value;
       const shapes = models[motions[shown].model];
-      this.view.setShapes(new Float64Array(shapes.shapes), shapes.bodies);
+      this.view.setShapes(shapes.shapes, shapes.bodies);
       const other = ghost === "" || Number(ghost) === shown ? null : this.motion(Number(ghost)).at(time);
       if (other) {
         const its = models[motions[ghost].model];
-        this.view.setGhost(new Float64Array(its.shapes), its.bodies, other);
+        this.view.setGhost(its.shapes, its.bodies, other);
       } else {
         this.view.hideGhost();
       }
