@@ -81,14 +81,15 @@ def is_where_the_states_are(browser, out):
     head = next(i for i, line in enumerate(lines) if line.startswith("time\t"))
     column = next(i for i, name in enumerate(lines[head].split("\t")) if name.endswith("elbow_flexion/value"))
     rows = [[float(x) for x in line.split("\t")] for line in lines[head + 1:]]
-    moves = browser.run(helpers + """const { motions } = playback.data.trials[0], motion = playback.motion(0);
-        const turn = frame => frame.bodies.map(body => body.turn);
-        const first = turn(motion.frames[0]);
-        // |a − b| = 2 sin(angle/4) of unit quaternions
-        const angle = (a, b) => 4 * Math.asin(Math.min(...[1, -1].map(sign =>
-          Math.hypot(...a.map((x, i) => x - sign * b[i])))) / 2);
-        return motion.times.map((time, k) =>
-          [time, Math.max(...turn(motion.frames[k]).map((turned, b) => angle(turned, first[b])))]);""")
+    moves = browser.run(helpers + """const { times } = playback.motion(0);
+        const turns = time => {
+          playback.player.set(time);
+          return playback.view.limb.bodies.map(body => [0, 1, 2, 4, 5, 6, 8, 9, 10].map(i => body.matrix.elements[i]));
+        };
+        const first = turns(times[0]);
+        // |R − R0| = √8 sin(angle/2)
+        const angle = (a, b) => 2 * Math.asin(Math.min(1, Math.hypot(...a.map((x, i) => x - b[i])) / Math.sqrt(8)));
+        return times.map(time => [time, Math.max(...turns(time).map((turned, b) => angle(turned, first[b])))]);""")
     assert len(moves) > 50
     for time, angle in moves:
         row = min(rows, key=lambda r: abs(r[0] - time))
