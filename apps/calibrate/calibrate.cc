@@ -10,6 +10,7 @@
 #include "bio/parameters/sign_of_parameter.h"
 #include "bio/review/trial_review.h"
 #include "calibrate/calibrate_methods.h"
+#include "calibrate/calibrate_playback.h"
 #include "calibrate/calibrate_remarks.h"
 #include "calibrate/calibrate_report.h"
 #include "calibrate/fitted_table.h"
@@ -170,9 +171,14 @@ class Calibrate : public Command {
           bio::calibratedModel(*found.training, found.heldOut.get(), systemOptions(simulation_),
                                found.options.trials.simulation, calibration);
     }
-    const CalibrateFindings findings{
-        model_,        *found.training, found.heldOut.get(),
-        found.options, calibration,     calibrated ? &*calibrated : nullptr};
+    CalibrateFindings findings{model_,
+                               model,
+                               *found.training,
+                               found.heldOut.get(),
+                               found.options,
+                               calibration,
+                               calibrated ? &*calibrated : nullptr};
+    if (folder.active()) findings.playback = calibratePlayback(findings);
     tellCalibrate(findings, summary);
     tellSteps(typed.trials.simulation.step, found, summary);
     sayModel(model, found.training->system(), summary.methods());

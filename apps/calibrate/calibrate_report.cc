@@ -338,6 +338,7 @@ Report calibrateReport(const CalibrateFindings& f) {
   report.mainFigure = f.heldOut
                           ? overlay(*f.heldOut, 0, c.heldOutBefore, c.heldOutAfter, "held out")
                           : overlay(f.training, 0, c.before, c.after, "calibration");
+  if (f.playback) report.details.push_back(*f.playback);
   if (f.heldOut) {
     report.details.push_back(
         Section{"Held-out trials",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,11 +13,13 @@ namespace app {
 /// A calibration with its inputs.
 struct CalibrateFindings {
   const std::string& modelFile;
+  const bio::Model& model;  ///< as it was given
   const bio::TrialSet& training;
   const bio::TrialSet* heldOut;  ///< null: none
   const bio::CalibrationOptions& options;
   const bio::Calibration& calibration;
   const bio::CalibratedModel* calibrated;  ///< null: no estimate
+  std::optional<Playback> playback = {};
 };
 
 /// RMS error of a prediction [deg].

@@ -7,6 +7,7 @@
 #include "design/planned_figures.h"
 #include "output/json_text.h"
 #include "output/text.h"
+#include "playback/playback.h"
 
 namespace app {
 namespace {
@@ -171,6 +172,15 @@ Report designReport(const DesignFindings& f) {
   report.verdict = verdictOf(f);
   const std::size_t channels = f.result.after.trial.measured.size();
   report.mainFigure = predicted(f, 0);
+  if (auto playback = playbackOf(
+          "The motion in three dimensions",
+          {{"design.sto",
+            nullptr,
+            {{"designed", f.model, f.design.system(), f.result.after.motion},
+             {"of the trial given", f.model, f.design.system(), f.result.before.motion}}}},
+          f.wrapAsCylinder)) {
+    report.details.push_back(*std::move(playback));
+  }
   report.details.push_back(boundTable(f));
   report.details.push_back(Paragraph{fmt::format(
       "A bound is the smallest standard deviation that an unbiased estimate can have (Cramér–Rao), "

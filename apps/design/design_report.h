@@ -20,6 +20,7 @@ struct DesignFindings {
   const bio::DesignResult& result;
   std::vector<bio::ModelParameter> parameters;       ///< of interest, then nuisance
   std::optional<info::MonteCarloResult> monteCarlo;  ///< for the parameters of interest
+  std::vector<std::string> wrapAsCylinder = {};      ///< of SystemOptions
 };
 
 void tellDesign(const DesignFindings& findings, Summary& summary);

@@ -5,6 +5,7 @@
 #include "design/planned_figures.h"
 #include "output/json_text.h"
 #include "output/text.h"
+#include "playback/replayed_trials.h"
 
 namespace app {
 namespace {
@@ -140,6 +141,16 @@ Report separatingReport(const SeparatingFindings& f) {
                              f.design.first().name, f.design.second().name, f.modelFile);
   report.verdict = writing.verdict();
   report.mainFigure = writing.predicted(0);
+  ReplayedTrials replayed(f.system, f.simulation);
+  bio::Trial designed = f.result.after.trial;
+  designed.measured.clear();  // they are predictions
+  replayed.beginTrial("design.sto", designed);
+  const ReplayedTrials::Setting setting{.step = f.simulation.step,
+                                        .given = f.design.question().start};
+  replayed.add("designed", f.model, designed, setting);
+  replayed.add("of the trial given", f.model, f.result.before.trial, setting);
+  if (auto playback = replayed.playback("The motion in three dimensions, without either effect"))
+    report.details.push_back(*std::move(playback));
   report.details.push_back(writing.telling());
   report.details.push_back(Paragraph{fmt::format(
       "The nats are the expected natural logarithm of the Bayes factor of the effect that is "

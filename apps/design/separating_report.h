@@ -15,6 +15,8 @@ struct SeparatingFindings {
   const bio::Model& model;
   const bio::discover::SeparatingDesign& design;
   const bio::discover::SeparatingResult& result;
+  bio::SystemOptions system;          ///< of the model
+  bio::SimulationOptions simulation;  ///< integrator and step
 };
 
 void tellSeparation(const SeparatingFindings& findings, Summary& summary);

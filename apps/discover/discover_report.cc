@@ -56,6 +56,7 @@ class Writer {
         }
       }
     }
+    if (f_.playback) report_.details.emplace_back(*f_.playback);
     heldOut();
     effects();
     if (!f_.verdict.finalists.empty()) evidence();

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,7 @@ struct DiscoverFindings {
   const WrittenDiscovery* written = nullptr;  ///< for musculoskeletal models
   double step = 0;                            ///< time step of the final search [s]
   std::vector<Figure> excitations = {};       ///< of the first trial fitted and the first held out
+  std::optional<Playback> playback = {};      ///< of a model with bodies to draw
 };
 
 /// Variable that a non-parametric force follows: "angle", or "position" of what slides, or "speed".

@@ -193,8 +193,8 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
   watch.end();
   const bio::discover::MusculoskeletalProblem& data = *result.data;
   const DiscoverWording wording = wordingOf(data, result.found.verdict);
-  const WrittenDiscovery written =
-      writeDiscovery({request, files, wording, result}, summary, folder);
+  const DiscoveryToWrite toWrite{request, files, wording, result};
+  const WrittenDiscovery written = writeDiscovery(toWrite, summary, folder);
   const info::discover::SteppedVerdict& found = result.found;
   const info::discover::Verdict& verdict = found.verdict;
   warnOfOneTrial(summary, request.trials.size(), request.heldOut.size());
@@ -219,7 +219,8 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
       found.step,
       excitationFigures(trials.front(),
                         request.heldOut.empty() ? nullptr : &trials[request.trials.size()],
-                        compiled)};
+                        compiled),
+      request.plays && folder.active() ? discoverPlayback(toWrite, written, model) : std::nullopt};
   summary.setSimulation(request.simulation.integrator, found.step, longestDuration(trials),
                         found.wallSeconds);
   sayModel(model, compiled, summary.methods());

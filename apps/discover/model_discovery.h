@@ -26,6 +26,7 @@ struct ModelDiscoveryRequest {
   std::optional<double> inputScatter;    ///< of --input-scatter
   std::optional<double> timeLimit;       ///< [s] of elapsed time
   SimulationOptions simulation;
+  bool plays = true;  ///< the report plays the motion
 };
 
 struct ModelDiscovery {

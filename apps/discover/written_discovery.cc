@@ -4,10 +4,13 @@
 
 #include <cmath>
 
+#include "bio/analysis/replay.h"
 #include "bio/opensim/osim_file.h"
 #include "options/set_parameters.h"
+#include "options/system_options.h"
 #include "output/driven_trials.h"
 #include "output/text.h"
+#include "playback/replayed_trials.h"
 
 namespace app {
 namespace {
@@ -20,6 +23,13 @@ bool mayBeWrong(const info::discover::Verdict& verdict) {
   const bool isFormula = verdict.finding == info::discover::Finding::unknown && verdict.formula &&
                          verdict.formula->wins;
   return !mayBeAdded(verdict) && !isFormula;
+}
+
+/// The written model in words.
+std::string nameOf(const WrittenDiscovery& written) {
+  if (written.model == "with_effect.osim") return "with the effect";
+  return written.model == "refitted.osim" ? "refitted, without an effect"
+                                          : "with the closest match";
 }
 
 class DiscoveryWriter {
@@ -134,6 +144,31 @@ std::vector<std::string> namesOfDiscovery(std::size_t training, std::size_t held
 WrittenDiscovery writeDiscovery(const DiscoveryToWrite& discovery, Summary& summary,
                                 OutputFolder& folder) {
   return DiscoveryWriter(discovery, summary, folder).write();
+}
+
+std::optional<Playback> discoverPlayback(const DiscoveryToWrite& discovery,
+                                         const WrittenDiscovery& written, const bio::Model& model) {
+  const SimulationOptions& typed = discovery.request.simulation;
+  const bio::discover::DiscoveryResult& result = discovery.result;
+  const bio::discover::MusculoskeletalProblem& data = *result.data;
+  const bio::SimulationOptions simulation = simulationOptions(typed, 0, 1);
+  const double before = bio::stepOf(model, simulation.integrator, typed.step);
+  ReplayedTrials replayed(systemOptions(typed), simulation);
+  for (const bool heldOut : {true, false}) {
+    for (const bio::discover::RepairedTrial& one : result.trials) {
+      if (one.isHeldOut != heldOut) continue;
+      const bio::Trial& recorded = data.trial(static_cast<int>(one.index));
+      replayed.beginTrial(recorded.file + (heldOut ? " (held out)" : ""), recorded);
+      if (result.repaired) {
+        const bio::Model& repaired = result.repaired->added.model;
+        replayed.add(nameOf(written), repaired,
+                     one.driven ? bio::drivenTrial(*one.driven, recorded, repaired) : recorded,
+                     {.step = result.found.step, .starts = one.starts});
+      }
+      replayed.add("original model", model, recorded, {.step = before});
+    }
+  }
+  return replayed.playback("The motion in three dimensions");
 }
 
 }  // namespace app

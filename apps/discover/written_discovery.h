@@ -9,6 +9,7 @@
 #include "discover/model_discovery.h"
 #include "output/output_folder.h"
 #include "output/summary.h"
+#include "report/report.h"
 
 namespace app {
 
@@ -45,5 +46,11 @@ struct DiscoveryToWrite {
 /// a folder.
 WrittenDiscovery writeDiscovery(const DiscoveryToWrite& discovery, Summary& summary,
                                 OutputFolder& folder);
+
+/// The trials in three dimensions, held-out ones first: with all that was fitted, with the original
+/// model, and as measured.
+/// @param model  the original one
+std::optional<Playback> discoverPlayback(const DiscoveryToWrite& discovery,
+                                         const WrittenDiscovery& written, const bio::Model& model);
 
 }  // namespace app

@@ -143,6 +143,7 @@ ExitStatus discoverInSets(ModelDiscoveryRequest each, const fs::path& folder,
     ModelDiscoveryRequest request = each;
     request.trials = set.training;
     request.heldOut = set.heldOut;
+    request.plays = false;  // every set has a report: half a megabyte more each
     CommandContext one = context;
     one.quiet = true;
     one.figures.reset();

@@ -44,8 +44,8 @@ std::string about(const Summary& summary) {
 std::string explorePage(const std::string& title, const std::string& verdict,
                         const nlohmann::ordered_json& data, const Summary& summary) {
   const std::string libraries = fmt::format("{}\n{}", assets::threeJs, assets::uplotJs);
-  const std::string scripts = fmt::format("{}\n{}\n{}\n{}", assets::sceneJs, assets::curvesJs,
-                                          assets::parametersJs, assets::pageJs);
+  const std::string scripts = fmt::format("{}\n{}\n{}\n{}\n{}", assets::sceneJs, assets::playerJs,
+                                          assets::curvesJs, assets::parametersJs, assets::pageJs);
   const std::string policy = fmt::format(
       "default-src 'none'; script-src {} {} 'wasm-unsafe-eval' blob:; worker-src blob:; "
       "style-src 'unsafe-inline'; img-src data: blob:",

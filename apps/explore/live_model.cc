@@ -9,7 +9,6 @@
 #include "bio/analysis/replay.h"
 #include "bio/emg/emg_mapping.h"
 #include "bio/opensim/osim_file.h"
-#include "bio/path/posture_samples.h"
 #include "bio/sensitivity/coupled_sensitivity.h"
 #include "info/dynamics/linear_table.h"
 #include "view/system_shape.h"
@@ -18,11 +17,6 @@ namespace app {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-bool hasPath(const bio::MusculoskeletalSystem& system, const std::string& muscle) {
-  return std::any_of(system.muscles().begin(), system.muscles().end(),
-                     [&](const bio::SystemMuscle& one) { return one.name == muscle; });
-}
 
 /// Whether a path over the wrap objects of one model is another one in a model that differs in
 /// numbers only.
@@ -54,22 +48,12 @@ bio::MusculoskeletalSystem changedSystem(const bio::Model& model, const bio::Mod
 }  // namespace
 
 LiveModel::LiveModel(const std::filesystem::path& model, LiveChoice choice)
-    : model_(bio::readOsim(model)), choice_(std::move(choice)), nominal_(model_, choice_.system) {
+    : model_(bio::readOsim(model)),
+      choice_(std::move(choice)),
+      nominal_(model_, choice_.system),
+      still_(bio::view::stillPaths(model_, nominal_, choice_.system.wrapAsCylinder)) {
   bodies_.push_back("ground");
   for (const bio::Body& body : model_.bodies) bodies_.push_back(body.name);
-  bio::PostureSamples postures(model_, nominal_.skeleton());
-  for (const bio::Muscle& muscle : model_.muscles) {
-    if (!muscle.enabled || hasPath(nominal_, muscle.name)) continue;
-    try {
-      bio::MusclePath path(model_, nominal_.skeleton(), muscle, choice_.system.wrapAsCylinder,
-                           postures.of(muscle));
-      if (path.isFunction()) continue;
-      still_.push_back(std::move(path));
-      stillNames_.push_back(muscle.name);
-    } catch (const bio::UnsupportedWrap&) {
-      // the program has warned of it
-    }
-  }
 }
 
 void LiveModel::addTrial(const std::filesystem::path& file, const std::string& sha256) {
@@ -139,7 +123,7 @@ std::vector<std::string> LiveModel::paths() const {
   std::vector<std::string> names;
   for (const bio::SystemMuscle& muscle : nominal_.muscles()) names.push_back(muscle.name);
   for (const bio::SystemElasticPath& path : nominal_.elasticPaths()) names.push_back(path.name);
-  names.insert(names.end(), stillNames_.begin(), stillNames_.end());
+  names.insert(names.end(), still_.names.begin(), still_.names.end());
   return names;
 }
 
@@ -173,7 +157,7 @@ LiveModel::Drawing LiveModel::drawingAt(double time) const {
   const Eigen::VectorXd q = postureAt(time);
   std::vector<const bio::MusclePath*> paths;
   for (std::size_t i = 0; i < system_->numPaths(); ++i) paths.push_back(&system_->path(i));
-  for (const bio::MusclePath& path : still_) paths.push_back(&path);
+  for (const bio::MusclePath& path : still_.paths) paths.push_back(&path);
   const bio::view::PlacedPaths placed =
       bio::view::placedPaths(system_->skeleton(), bodies_, paths, q);
   Drawing drawing;

@@ -13,6 +13,7 @@
 #include "bio/parameters/parameters.h"
 #include "bio/simulation/simulate.h"
 #include "bio/tables/trial.h"
+#include "view/still_paths.h"
 
 /// The simulation behind the page of `explore`: what `replay` computes, again and again with other
 /// parameters. Compiled into the program and into the page (live_exports.cc), so that both compute
@@ -96,12 +97,10 @@ class LiveModel {
   bio::Model model_;
   LiveChoice choice_;
   bio::MusculoskeletalSystem nominal_;
+  bio::view::StillPaths still_;
   std::vector<LiveTrial> trials_;
   std::vector<std::string> names_;
   std::vector<std::string> bodies_;
-  std::vector<std::string> stillNames_;
-  std::vector<bio::MusclePath> still_;  ///< of muscles that no free coordinate moves
-
   std::optional<bio::ParameterCatalogue::Setting> setting_;
   std::optional<bio::MusculoskeletalSystem> system_;
   bio::Trajectory motion_;

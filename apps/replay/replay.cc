@@ -12,6 +12,7 @@
 #include "options/system_options.h"
 #include "options/trial_input.h"
 #include "output/progress_bar.h"
+#include "playback/playback.h"
 #include "replay/replay_report.h"
 #include "report/result.h"
 
@@ -116,8 +117,12 @@ class Replay : public Command {
       bio::writeTable(bio::forcesTable(system, motion, muscles), path);
     });
 
-    const ReplayFindings findings{model_, trial_,  model, trial, system,
-                                  replay, muscles, left,  effect};
+    ReplayFindings findings{model_, trial_, model, trial, system, replay, muscles, left, effect};
+    if (folder.active()) {
+      findings.playback = playbackOf("The motion in three dimensions",
+                                     {{trial_, &trial, {{"simulated", model, system, motion}}}},
+                                     systemOptions(simulation_).wrapAsCylinder);
+    }
     summary.setSimulation(simulation_.integrator, replay.options.step, replay.options.duration,
                           motion.wallSeconds);
     tellReplay(findings, summary);

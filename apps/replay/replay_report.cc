@@ -270,6 +270,7 @@ Report replayReport(const ReplayFindings& f) {
     figures.insert(first ? figures.begin() : figures.end(), motionFigure(f, i));
   }
   report.mainFigure = std::move(figures.front());
+  if (f.playback) report.details.push_back(*f.playback);
   for (std::size_t i = 1; i < figures.size(); ++i) report.details.push_back(std::move(figures[i]));
   for (const bool ofRotations : {true, false}) {
     Figure figure = reactionFigure(f, ofRotations);

@@ -22,6 +22,7 @@ struct ReplayFindings {
   const bio::MuscleReport& muscles;
   const std::optional<bio::LeftRange>& left;
   const std::optional<bio::StepEffect>& effect;
+  std::optional<Playback> playback = {};
 };
 
 /// Sets the values of summary.json: rms_error_deg, newton_iterations_per_step, …

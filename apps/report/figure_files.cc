@@ -74,6 +74,7 @@ class FigureWriter {
   void add(const VectorDrawing& drawing) {
     addDrawing(drawing.title, drawing.caption, drawing.svg);
   }
+  void add(const Playback&) {}  // paper does not move; `render` makes pictures
 
   void add(const Picture& picture) {
     const std::string name = names_.of(picture.title, "picture");

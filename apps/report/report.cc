@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <stdexcept>
@@ -107,6 +108,18 @@ std::string html(const VectorDrawing& drawing) {
       htmlText(drawing.title), drawing.svg, htmlText(drawing.caption));
 }
 
+std::string html(const Playback& playback) {
+  if (!playback.still.starts_with("<svg class=\"still\"")) {
+    throw std::invalid_argument(
+        fmt::format("playback '{}': must have an SVG of class still", playback.title));
+  }
+  return fmt::format(
+      "<figure class=\"playback\">\n<h3>{}</h3>\n{}<script "
+      "type=\"application/json\">{}</script>\n<figcaption>{}</figcaption>\n</figure>\n",
+      htmlText(playback.title), playback.still, scriptText(playback.data),
+      htmlText(playback.caption));
+}
+
 std::string html(const Table& table) {
   std::string text = "<div class=\"table\">\n";
   if (!table.title.empty()) text += fmt::format("<h3>{}</h3>\n", htmlText(table.title));
@@ -156,7 +169,12 @@ std::string methods(const Methods& methods) {
   return text;
 }
 
-std::string provenance(const Summary& summary) {
+bool hasPlayback(const Report& report) {
+  return std::any_of(report.details.begin(), report.details.end(),
+                     [](const ReportPart& part) { return std::holds_alternative<Playback>(part); });
+}
+
+std::string provenance(const Summary& summary, bool has3d) {
   std::string text = html(Section{"Numbers of this result"});
   Table figures = summaryTable(summary);
   figures.title.clear();
@@ -167,8 +185,8 @@ std::string provenance(const Summary& summary) {
   Table inputs{"", {"input file", "SHA-256"}, {}};
   for (const auto& input : summary.inputs()) inputs.rows.push_back({input.path, input.sha256});
   if (!inputs.rows.empty()) text += html(inputs);
-  text += fmt::format("<p>FisherHill {}. Plots by uPlot 1.6.32 (MIT licence).</p>\n",
-                      htmlText(info::version()));
+  text += fmt::format("<p>FisherHill {}. Plots by uPlot 1.6.32{} (MIT licence).</p>\n",
+                      htmlText(info::version()), has3d ? ", motions by three.js 0.170.0" : "");
   return text;
 }
 
@@ -225,7 +243,9 @@ std::string renderReport(const Report& report, const Summary& summary) {
       "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   text += fmt::format("<title>{}</title>\n", htmlText(report.title));
+  const bool has3d = hasPlayback(report);
   text += fmt::format("<!-- Contains uPlot 1.6.32.\n{}-->\n", assets::uplotLicence);
+  if (has3d) text += fmt::format("<!-- Contains three.js 0.170.0.\n{}-->\n", assets::threeLicence);
   text += fmt::format("<style>{}\n{}</style>\n", assets::uplotCss, assets::reportCss);
   text += "</head>\n<body>\n<main>\n";
   text += fmt::format("<header><h1>{}</h1>\n<p class=\"verdict\">{}</p></header>\n",
@@ -237,9 +257,13 @@ std::string renderReport(const Report& report, const Summary& summary) {
     text += std::visit([](const auto& item) { return html(item); }, part);
   }
   text += methods(summary.methods());
-  text += provenance(summary);
+  text += provenance(summary, has3d);
   text += "</main>\n";
   text += fmt::format("<script>{}\n{}</script>\n", assets::uplotJs, assets::reportJs);
+  if (has3d) {
+    text += fmt::format("<script>{}</script>\n<script>{}\n{}\n{}</script>\n", assets::threeJs,
+                        assets::sceneJs, assets::playerJs, assets::playbackJs);
+  }
   return text + "</body>\n</html>\n";
 }
 

@@ -73,6 +73,15 @@ struct VectorDrawing {
   std::string caption = {};
 };
 
+/// Motions in three dimensions that a reader plays: what playback.js reads, see playback.h.
+struct Playback {
+  std::string title = {};
+  nlohmann::ordered_json data = {};
+  std::string still =
+      {};  ///< an <svg> element with class "still": shown on paper and without WebGL
+  std::string caption = {};
+};
+
 struct Paragraph {
   std::string text = {};
 };
@@ -84,7 +93,8 @@ struct Section {
       {};  ///< what it shows, and how to read it; one or two sentences; may be empty
 };
 
-using ReportPart = std::variant<Section, Paragraph, Figure, Table, Picture, VectorDrawing>;
+using ReportPart =
+    std::variant<Section, Paragraph, Figure, Table, Picture, VectorDrawing, Playback>;
 
 /// A report: title, verdict and main picture or figure, then the details in their order, then
 /// methods, numbers and provenance, which are taken from the summary.

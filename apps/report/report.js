@@ -112,7 +112,7 @@
     window.addEventListener("resize", () => plot.setSize({ width: place.clientWidth, height: 340 }));
   };
 
-  document.querySelectorAll("figure:not(.picture)").forEach(figure => {
+  document.querySelectorAll("figure:not(.picture):not(.playback)").forEach(figure => {
     draw(figure.querySelector(".plot"), JSON.parse(figure.querySelector("script").textContent));
   });
 })();

@@ -13,6 +13,7 @@
 #include "output/resumable_table.h"
 #include "output/text.h"
 #include "report/result.h"
+#include "study/study_playback.h"
 #include "study/study_report.h"
 #include "study/study_subject.h"
 
@@ -150,6 +151,8 @@ class StudyCommand : public Command {
       if (const std::string& message = cellOf(row, "message"); !message.empty())
         summary.warn(cellOf(row, "subject") + ": " + message);
     }
+    findings.playback = studyPlayback(
+        study, [&](const bio::StudySubject& subject) { return folderOf(context, subject); });
     deliver(context, summary, studyReport(findings), results);
     file.remove();
     return statuses.size() == 1 && statuses.contains("ok") ? ExitStatus::done

@@ -151,6 +151,7 @@ Report studyReport(const StudyFindings& f) {
   if (!f.study.parameters.empty()) report.mainFigure = errorsFigure(f);
   report.details.emplace_back(subjectsTable(f));
   if (!f.estimates.empty()) report.details.emplace_back(parametersTable(f));
+  if (f.playback) report.details.emplace_back(*f.playback);
   report.details.emplace_back(Paragraph{
       "subjects/NAME/calibrate/report.html and subjects/NAME/discover/report.html explain "
       "each subject's results; estimates.csv has every estimate."});

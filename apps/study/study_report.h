@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct StudyFindings {
   const bio::StudyFile& study;
   std::vector<std::vector<std::string>> rows;  ///< of study.csv
   std::vector<StudyEstimate> estimates;        ///< without initial states
+  std::optional<Playback> playback = {};
 };
 
 /// Cell of a row by its column's name.

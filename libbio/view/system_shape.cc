@@ -119,6 +119,34 @@ std::vector<BodyShape> bodyShapes(const Model& model) {
   return shapes;
 }
 
+std::vector<double> shapeNumbers(const std::vector<BodyShape>& shapes) {
+  std::vector<double> numbers;
+  const auto add = [&](const Vector3d& v) { numbers.insert(numbers.end(), v.begin(), v.end()); };
+  for (const BodyShape& body : shapes) {
+    numbers.push_back(static_cast<double>(body.bones.size()));
+    for (const TaperedBone& bone : body.bones) {
+      add(bone.from);
+      add(bone.to);
+      numbers.insert(numbers.end(), {bone.fromRadius, bone.toRadius, bone.shaftRadius});
+    }
+    numbers.push_back(static_cast<double>(body.joints.size()));
+    for (const auto& [centre, radius] : body.joints) {
+      add(centre);
+      numbers.push_back(radius);
+    }
+    numbers.push_back(static_cast<double>(body.wraps.size()));
+    for (const WrapObject& wrap : body.wraps) {
+      const Placement<double> X = placementOf(wrap.frame);
+      numbers.push_back(static_cast<double>(wrap.shape));
+      for (int i = 0; i < 3; ++i) add(X.R.row(i));
+      add(X.p);
+      numbers.insert(numbers.end(), {wrap.radius, wrap.length, wrap.outerRadius});
+      add(wrap.semiAxes);
+    }
+  }
+  return numbers;
+}
+
 double tubeRadius(double tendonForce) {
   constexpr double restingRadius = 0.0025;  // [m]
   constexpr double shownStress = 5e6;       // [N/m²]

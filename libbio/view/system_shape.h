@@ -35,6 +35,11 @@ struct BodyShape {
 /// Nothing shorter than 2 cm is drawn.
 std::vector<BodyShape> bodyShapes(const Model& model);
 
+/// Shapes as the scripts of pages read them. Of each body: number of bones, each from, to and three
+/// radii; number of joints, each centre and radius; number of wrap objects, each kind, placement
+/// (rotation row by row, then translation), radius, length, outer radius and semi-axes.
+std::vector<double> shapeNumbers(const std::vector<BodyShape>& shapes);
+
 /// One muscle at one moment.
 struct MuscleShape {
   std::vector<Eigen::Vector3d> points;  ///< centre line in ground [m]

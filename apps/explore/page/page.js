@@ -40,7 +40,7 @@
   const given = data.parameters.map(p => p.value);
   const state = {
     model: data.models.length - 1, trial: 0, values: [...given], integrator: data.integrator, step: data.step,
-    time: data.trials[0].start, playing: false, result: null, reference: [],
+    time: data.trials[0].start, result: null, reference: [],
   };
   const valuesFor = (model, values) => data.models[model].parameters.map(i => values[i]);
   const request = () => ({
@@ -171,14 +171,11 @@
 
   function setTimeRange() {
     const { start, end } = data.trials[state.trial];
-    Object.assign($("time"), { min: start, max: end });
-    setTime(start);
+    player.setSpan(start, end);
   }
   let isDrawing = false;
-  async function setTime(time) {
+  async function showTime(time) {
     state.time = time;
-    $("time").value = time;
-    $("clock").textContent = `${time.toFixed(3)} s`;
     curves.setTime(time);
     if (!state.result || isDrawing || isRunning) return;
     isDrawing = true;
@@ -190,22 +187,7 @@
     }
     isDrawing = false;
   }
-  let before = 0;
-  function advance(now) {
-    if (!state.playing) return;
-    const { start, end } = data.trials[state.trial];
-    const next = state.time + Number($("speed").value) * (now - before) / 1000;
-    before = now;
-    setTime(next > end ? start : next);
-    requestAnimationFrame(advance);
-  }
-  $("play").onclick = () => {
-    state.playing = !state.playing;
-    $("play").textContent = state.playing ? "Pause" : "Play";
-    before = performance.now();
-    if (state.playing) requestAnimationFrame(advance);
-  };
-  $("time").oninput = () => setTime(Number($("time").value));
+  const player = new Player({ button: $("play"), range: $("time"), clock: $("clock"), speed: $("speed") }, showTime);
   document.addEventListener("keydown", event => {
     if (event.code !== "Space" || /INPUT|SELECT|BUTTON/.test(event.target.tagName)) return;
     event.preventDefault();
@@ -232,11 +214,7 @@
   async function reference() {
     state.reference = await ask("run", { ...request(), model: 0, values: data.models[0].values });
   }
-  const context = document.querySelector("#colours canvas").getContext("2d");
-  for (let x = 0; x < 160; ++x) {
-    context.fillStyle = `rgb(${viridisAt(x / 159).map(c => Math.round(255 * c))})`;
-    context.fillRect(x, 0, 1, 10);
-  }
+  drawColours(document.querySelector("#colours canvas"));
   const fitSizes = () => { view.resize(); if (state.result) curves.show(state, true); };
   window.addEventListener("resize", fitSizes);
   dark.addEventListener("change", fitSizes);

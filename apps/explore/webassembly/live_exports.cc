@@ -232,33 +232,10 @@ const char* live_drawing(double time) {
   });
 }
 
-/// The bodies' shapes in their frames. Of each body: number of bones, each from, to and three
-/// radii; number of joints, each centre and radius; number of wrap objects, each kind, placement,
-/// radius, length, outer radius and semi-axes.
+/// The bodies' shapes in their frames, as bio::view::shapeNumbers() has them.
 const char* live_shapes() {
-  return attempt([&] {
-    numbers.clear();
-    for (const bio::view::BodyShape& body : bio::view::bodyShapes(live->changedModel())) {
-      numbers.push_back(static_cast<double>(body.bones.size()));
-      for (const bio::view::TaperedBone& bone : body.bones) {
-        add(bone.from);
-        add(bone.to);
-        numbers.insert(numbers.end(), {bone.fromRadius, bone.toRadius, bone.shaftRadius});
-      }
-      numbers.push_back(static_cast<double>(body.joints.size()));
-      for (const auto& [centre, radius] : body.joints) {
-        add(centre);
-        numbers.push_back(radius);
-      }
-      numbers.push_back(static_cast<double>(body.wraps.size()));
-      for (const bio::WrapObject& wrap : body.wraps) {
-        numbers.push_back(static_cast<double>(wrap.shape));
-        add(bio::placementOf(wrap.frame));
-        numbers.insert(numbers.end(), {wrap.radius, wrap.length, wrap.outerRadius});
-        add(wrap.semiAxes);
-      }
-    }
-  });
+  return attempt(
+      [&] { numbers = bio::view::shapeNumbers(bio::view::bodyShapes(live->changedModel())); });
 }
 
 const double* live_numbers() {

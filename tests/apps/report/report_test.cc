@@ -147,6 +147,23 @@ TEST(Report, KeepsADrawingInsideThePage) {
   EXPECT_THROW(renderReport(report, Summary({})), std::invalid_argument);
 }
 
+TEST(Report, CarriesThreeDimensionsOnlyWhereSomethingIsPlayed) {
+  Report report = smallReport();
+  EXPECT_THAT(renderReport(report, Summary({})), Not(HasSubstr("THREE")));
+  Playback playback{.title = "An <arm>", .caption = "It & moves."};
+  playback.still = "<svg class=\"still\"></svg>\n";
+  playback.data = {{"trials", {{{"name", "</script><script>alert(1)</script>"}}}}};
+  report.details = {playback};
+  const std::string html = renderReport(report, Summary({}));
+  EXPECT_THAT(html, AllOf(HasSubstr("<figure class=\"playback\">\n<h3>An &lt;arm&gt;</h3>\n<svg"),
+                          HasSubstr("<figcaption>It &amp; moves.</figcaption>"),
+                          HasSubstr("class View"), HasSubstr("three.js 0.170.0"),
+                          HasSubstr("default-src 'none'"), Not(HasSubstr("<script>alert(1)"))));
+  playback.still = "<script></script>";
+  report.details = {playback};
+  EXPECT_THROW(renderReport(report, Summary({})), std::invalid_argument);
+}
+
 TEST(Report, HasSectionsWithContextAndTheMethodsThatWereUsed) {
   Report report = smallReport();
   report.details = {Section{"Muscles", "What drives <it>."}};

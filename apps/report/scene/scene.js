@@ -1,5 +1,6 @@
 "use strict";
-// The 3-D view: bones, wrap surfaces and muscles in the ground's frame, y upwards.
+// The 3-D view of explore's page and of reports: bones, wrap surfaces and muscles in the ground's frame, y upwards
+// unless setUp() says otherwise.
 
 const viridis = [[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141],
                  [39, 173, 129], [92, 200, 99], [170, 220, 50], [253, 231, 37]];
@@ -9,6 +10,15 @@ function viridisAt(x) {
   const place = Math.min(Math.max(x, 0), 1) * (viridis.length - 1);
   const low = Math.min(Math.floor(place), viridis.length - 2);
   return viridis[low].map((c, i) => (c + (place - low) * (viridis[low + 1][i] - c)) / 255);
+}
+
+/// The colours of activation 0 to the largest, from left to right.
+function drawColours(canvas) {
+  const context = canvas.getContext("2d");
+  for (let x = 0; x < canvas.width; ++x) {
+    context.fillStyle = `rgb(${viridisAt(x / (canvas.width - 1)).map(c => Math.round(255 * c))})`;
+    context.fillRect(x, 0, 1, canvas.height);
+  }
 }
 
 /// Reads numbers one after the other.
@@ -121,26 +131,12 @@ function wrapMesh(kind, X, radius, length, outer, semiAxes, material) {
   return group;
 }
 
-class View {
-  constructor(canvas) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
-    this.scene = new THREE.Scene();
-    this.camera = new THREE.PerspectiveCamera(35, 1, 0.01, 100);
-    this.controls = new THREE.OrbitControls(this.camera, canvas);
-    this.controls.addEventListener("change", () => this.render());
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8a8478, 2.2));
-    const sun = new THREE.DirectionalLight(0xffffff, 1.6);
-    sun.position.set(1.5, 2, 2.5);
-    this.scene.add(sun);
-    this.boneMaterial = new THREE.MeshLambertMaterial({ color: 0xe8dfca });
-    this.wrapMaterial = new THREE.MeshLambertMaterial(
-      { color: 0x6aa9d8, transparent: true, opacity: 0.28, depthWrite: false, side: THREE.DoubleSide });
-    this.bodies = [];
-    this.tubes = [];
-    this.muscleGroup = new THREE.Group();
-    this.scene.add(this.muscleGroup);
-    this.wrapsAreShown = false;
-    this.shapes = new Float64Array();
+/// The solids of all bodies.
+class Limb {
+  constructor(parent, boneMaterial, wrapMaterial) {
+    Object.assign(this, { boneMaterial, wrapMaterial, bodies: [], shapes: new Float64Array(), wrapsAreShown: false });
+    this.group = new THREE.Group();
+    parent.add(this.group);
   }
 
   /// The numbers of Core.shapes().
@@ -150,7 +146,7 @@ class View {
     this.shapes = values;
     this.bodies.forEach(body => {
       body.traverse(part => part.geometry && part.geometry.dispose());
-      this.scene.remove(body);
+      this.group.remove(body);
     });
     const from = new Numbers(values);
     this.bodies = [];
@@ -174,7 +170,7 @@ class View {
         wrap.userData.isWrap = true;
         body.add(wrap);
       }
-      this.scene.add(body);
+      this.group.add(body);
       this.bodies.push(body);
     }
   }
@@ -184,18 +180,82 @@ class View {
     this.bodies.forEach(body => body.children.forEach(part => {
       if (part.userData.isWrap) part.visible = shown;
     }));
+  }
+
+  /// @param from  Numbers: the placement of each body
+  place(from) {
+    this.bodies.forEach(body => {
+      body.matrix.copy(matrixOf(from.take(12)));
+      body.matrixWorldNeedsUpdate = true;
+    });
+  }
+
+  expand(box) {
+    this.bodies.forEach(body => body.children.forEach(part => {
+      if (!part.userData.isWrap) box.expandByObject(part);
+    }));
+  }
+}
+
+class View {
+  constructor(canvas) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.scene = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(35, 1, 0.01, 100);
+    this.controls = new THREE.OrbitControls(this.camera, canvas);
+    this.controls.addEventListener("change", () => this.render());
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8a8478, 2.2));
+    const sun = new THREE.DirectionalLight(0xffffff, 1.6);
+    sun.position.set(1.5, 2, 2.5);
+    this.scene.add(sun);
+    this.root = new THREE.Group();  // the ground
+    this.scene.add(this.root);
+    this.wrapMaterial = new THREE.MeshLambertMaterial(
+      { color: 0x6aa9d8, transparent: true, opacity: 0.28, depthWrite: false, side: THREE.DoubleSide });
+    this.limb = new Limb(this.root, new THREE.MeshLambertMaterial({ color: 0xe8dfca }), this.wrapMaterial);
+    this.ghost = null;
+    this.tubes = [];
+    this.muscleGroup = new THREE.Group();
+    this.root.add(this.muscleGroup);
+    this.bounds = null;  // what the view has room for; null: what it shows
+  }
+
+  /// @param up  direction in the ground's frame that is upwards
+  setUp(up) {
+    this.root.quaternion.setFromUnitVectors(new THREE.Vector3(...up), new THREE.Vector3(0, 1, 0));
+  }
+
+  setShapes(values, count) { this.limb.setShapes(values, count); }
+
+  showWraps(shown) {
+    this.limb.showWraps(shown);
     this.render();
+  }
+
+  /// Another posture, translucent; shown with the next drawing.
+  /// @param numbers  begins with the placements of its bodies
+  setGhost(shapes, count, numbers) {
+    if (!this.ghost) {
+      const material = new THREE.MeshLambertMaterial(
+        { color: 0xd55e00, transparent: true, opacity: 0.35, depthWrite: false,
+          polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4 });
+      this.ghost = new Limb(this.root, material, this.wrapMaterial);
+    }
+    this.ghost.setShapes(shapes, count);
+    this.ghost.place(new Numbers(numbers));
+    this.ghost.group.visible = true;
+  }
+
+  hideGhost() {
+    if (this.ghost) this.ghost.group.visible = false;
   }
 
   /// The numbers of Core.drawing().
   /// @param largest  activation that has the last colour
   setDrawing(values, largest) {
     const from = new Numbers(values);
-    this.box = new THREE.Box3();
-    this.bodies.forEach(body => {
-      body.matrix.copy(matrixOf(from.take(12)));
-      body.matrixWorldNeedsUpdate = true;
-    });
+    this.lines = new THREE.Box3();
+    this.limb.place(from);
     let i = 0;
     for (; from.at < values.length; ++i) {
       const points = from.next();
@@ -205,31 +265,63 @@ class View {
       const line = from.take(3 * points);
       const colour = Number.isNaN(activation) ? [0.6, 0.6, 0.6] : viridisAt(activation / largest);
       this.tubes[i].show(line, radius, colour);
-      for (let k = 0; k < points; ++k) this.box.expandByPoint(new THREE.Vector3(...line.subarray(3 * k, 3 * k + 3)));
+      for (let k = 0; k < points; ++k) this.lines.expandByPoint(new THREE.Vector3(...line.subarray(3 * k, 3 * k + 3)));
     }
     for (; i < this.tubes.length; ++i) this.tubes[i].mesh.visible = false;
     if (!this.isFitted) this.lookFrom("side");
     this.render();
   }
 
+  /// The box of what is shown.
+  content() {
+    this.scene.updateMatrixWorld(true);
+    const box = this.lines.isEmpty() ? this.lines.clone() : this.lines.clone().applyMatrix4(this.root.matrixWorld);
+    this.limb.expand(box);
+    if (this.ghost && this.ghost.group.visible) this.ghost.expand(box);
+    return box;
+  }
+
   /// @param side  side (along −z), front (along −x), top, isometric
   lookFrom(side) {
-    const box = this.box.clone();
-    this.scene.updateMatrixWorld(true);
-    this.bodies.forEach(body => body.children.forEach(part => {
-      if (!part.userData.isWrap) box.expandByObject(part);
-    }));
+    const box = (this.bounds || this.content()).clone();
     if (box.isEmpty()) box.expandByPoint(new THREE.Vector3(-0.5, -0.5, -0.5)).expandByPoint(new THREE.Vector3(0.5, 0.5, 0.5));
-    const middle = box.getCenter(new THREE.Vector3()), size = box.getSize(new THREE.Vector3()).length();
-    const direction = { side: [0, 0, 1], front: [1, 0, 0], top: [0, 1, 0.001], isometric: [1, 0.7, 1] }[side];
-    const distance = 0.5 * size / Math.sin(this.camera.fov * Math.PI / 360) / Math.min(1, this.camera.aspect) * 0.95;
-    this.camera.position.copy(middle).addScaledVector(new THREE.Vector3(...direction).normalize(), distance);
+    const middle = box.getCenter(new THREE.Vector3()), half = box.getSize(new THREE.Vector3()).multiplyScalar(0.5);
+    const direction = new THREE.Vector3(...{ side: [0, 0, 1], front: [1, 0, 0], top: [0, 1, 0.001], isometric: [1, 0.7, 1] }[side]).normalize();
+    // as near as every corner of the box allows
+    const right = new THREE.Vector3(0, 1, 0).cross(direction).normalize(), up = direction.clone().cross(right);
+    const slope = Math.tan(this.camera.fov * Math.PI / 360);
+    let distance = 1e-3;
+    for (let i = 0; i < 8; ++i) {
+      const corner = new THREE.Vector3(i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z);
+      distance = Math.max(distance, corner.dot(direction) + 1.08 * Math.max(
+        Math.abs(corner.dot(up)) / slope, Math.abs(corner.dot(right)) / (slope * this.camera.aspect)));
+    }
+    this.camera.position.copy(middle).addScaledVector(direction, distance);
     this.camera.near = distance / 100;
     this.camera.far = distance * 20;
     this.camera.updateProjectionMatrix();
     this.controls.target.copy(middle);
     this.controls.update();
     this.isFitted = true;
+  }
+
+  /// Turns the view about its middle [rad].
+  turn(around, down) {
+    const away = this.camera.position.clone().sub(this.controls.target);
+    const distance = away.length(), angle = Math.atan2(away.x, away.z) + around;
+    const tilt = Math.min(Math.max(Math.acos(away.y / distance) + down, 0.01), Math.PI - 0.01);
+    away.set(Math.sin(tilt) * Math.sin(angle), Math.cos(tilt), Math.sin(tilt) * Math.cos(angle));
+    this.camera.position.copy(this.controls.target).addScaledVector(away, distance);
+    this.controls.update();
+    this.render();
+  }
+
+  /// @param factor  of the distance from the middle
+  zoom(factor) {
+    const away = this.camera.position.clone().sub(this.controls.target);
+    this.camera.position.copy(this.controls.target).addScaledVector(away, factor);
+    this.controls.update();
+    this.render();
   }
 
   resize() {

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bio/model/model.h"
+#include "bio/path/path.h"
+#include "bio/simulation/musculoskeletal_system.h"
+
+namespace bio::view {
+
+/// Paths of the muscles that no free coordinate of a system moves: they are not simulated, but
+/// drawn.
+struct StillPaths {
+  std::vector<std::string> names;
+  std::vector<MusclePath> paths;
+};
+
+/// Muscles that are switched off, whose path is a function of coordinates or whose wraps are not
+/// supported have none.
+/// @param system  of the model
+/// @throws std::invalid_argument what MusclePath throws
+StillPaths stillPaths(const Model& model, const MusculoskeletalSystem& system,
+                      const std::vector<std::string>& wrapAsCylinder);
+
+}  // namespace bio::view
