@@ -12,7 +12,7 @@ namespace app {
 namespace {
 
 /// Longer side of the drawing.
-constexpr double width = 420;
+constexpr double longerSide = 420;
 
 // viridis at nine places, as scene.js has it
 constexpr std::array<std::array<double, 3>, 9> viridis = {{{68, 1, 84},
@@ -107,7 +107,7 @@ std::string stillDrawing(const PlayedFrame& frame, const std::vector<bio::view::
     }
   }
   if (box.isEmpty()) box.extend(Eigen::Vector2d::Zero());
-  const double scale = width / std::max(1e-6, box.sizes().maxCoeff());
+  const double scale = longerSide / std::max(1e-6, box.sizes().maxCoeff());
   std::string text = fmt::format(
       "<svg class=\"still\" role=\"img\" aria-label=\"{}\" viewBox=\"0 0 {:.0f} {:.0f}\">\n",
       svgText(description), std::ceil(scale * box.sizes().x()), std::ceil(scale * box.sizes().y()));
