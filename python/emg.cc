@@ -42,9 +42,10 @@ py::object emg(const std::variant<FileName, std::vector<FileName>>& recordings,
   interruptible([&](const std::atomic<bool>&) {
     const bio::EmgConfigFile file = bio::readEmgConfig(config.text);
     joined = bio::readRecordings(file, files);
-    const bio::EmgConfig config = bio::emgConfigFor(file, joined.recording, bio::markerNames(file));
-    result = bio::excitationsFromEmg(joined.recording, config);
-    trial = bio::excitationTable(result, config);
+    const bio::EmgConfig settings =
+        bio::emgConfigFor(file, joined.recording, bio::markerNames(file));
+    result = bio::excitationsFromEmg(joined.recording, settings);
+    trial = bio::excitationTable(result, settings);
     if (!write.text.empty()) bio::writeTable(trial, write.text);
   });
   py::dict offsets;

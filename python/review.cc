@@ -90,8 +90,8 @@ void defineReviews(py::module_& module, py::class_<bio::Model>& model,
           docstrings::Model_review);
   trial.def(
       "review",
-      [](const bio::Trial& self, const bio::Model& model) {
-        return listOf(bio::reviewTrial(self, model));
+      [](const bio::Trial& self, const bio::Model& readFor) {
+        return listOf(bio::reviewTrial(self, readFor));
       },
       "model"_a, docstrings::Trial_review);
   module.def("length_jumps", &lengthJumps, "model"_a, docstrings::length_jumps);

@@ -3,27 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "report/svg_text.h"
+#include "view/colour_map.h"
 
 namespace app {
 namespace {
 
 /// Longer side of the drawing.
 constexpr double longerSide = 420;
-
-// viridis at nine places, as scene.js has it
-constexpr std::array<std::array<double, 3>, 9> viridis = {{{68, 1, 84},
-                                                           {71, 44, 122},
-                                                           {59, 81, 139},
-                                                           {44, 113, 142},
-                                                           {33, 144, 141},
-                                                           {39, 173, 129},
-                                                           {92, 200, 99},
-                                                           {170, 220, 50},
-                                                           {253, 231, 37}}};
 
 Eigen::Quaterniond uprightFrom(const Eigen::Vector3d& up) {
   return Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitY());
@@ -65,14 +54,9 @@ Viewpoint viewpointOf(const std::vector<PlayedFrame>& frames, const Eigen::Vecto
 
 std::string activationColour(double share) {
   if (std::isnan(share)) return "#999999";
-  const double place = std::clamp(share, 0.0, 1.0) * (viridis.size() - 1);
-  const std::size_t low = std::min(static_cast<std::size_t>(place), viridis.size() - 2);
   std::string colour = "#";
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double value = viridis[low][c] + (place - static_cast<double>(low)) *
-                                               (viridis[low + 1][c] - viridis[low][c]);
-    colour += fmt::format("{:02x}", static_cast<int>(std::lround(value)));
-  }
+  for (const double part : bio::view::viridis(share))
+    colour += fmt::format("{:02x}", static_cast<int>(std::lround(255 * part)));
   return colour;
 }
 

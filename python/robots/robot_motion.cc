@@ -190,8 +190,8 @@ py::object optimiseRobotMotion(const std::string& robot, bool discrete,
   request.threads = threads;
   const MotionResult found = optimised(request);
   const info::SearchResult& search = found.search;
-  const auto tried = [](const std::optional<info::robot::MotionTrials>& trials) {
-    return trials ? trialsOf(trials->result) : py::none();
+  const auto tried = [](const std::optional<info::robot::MotionTrials>& done) {
+    return done ? trialsOf(done->result) : py::none();
   };
   return results("names"_a = namesOf(found.unknown), "units"_a = unitsOf(found.unknown),
                  "state_names"_a = found.states, "before"_a = motionOf(found.before),
