@@ -55,9 +55,9 @@ class Design : public Command {
     folder.writeFile("design.sto", [&](const std::filesystem::path& path) {
       bio::writeTable(bio::plannedTable(system, result.after.trial), path);
     });
-    DesignFindings findings{
-        typed_.model, typed_.trial, model, design,
-        result,       {},           {},    systemOptions(typed_.simulation).wrapAsCylinder};
+    DesignFindings findings{typed_.model, typed_.trial, model, design, result, {}, {}};
+    if (folder.active())
+      findings.playback = designPlayback(findings, systemOptions(typed_.simulation).wrapAsCylinder);
     for (const auto* list : {&design.question().parameters, &design.question().nuisance}) {
       for (const std::size_t index : *list) {
         findings.parameters.push_back(catalogue.parameters()[index]);
@@ -123,9 +123,10 @@ class Design : public Command {
     search(context, [&] { result = design.search(typed_.settings); });
     const double wall =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const SeparatingFindings findings{
-        typed_.model,      typed_.trial, model, design, result, systemOptions(typed_.simulation),
-        options.simulation};
+    SeparatingFindings findings{typed_.model, typed_.trial, model, design, result};
+    if (folder.active())
+      findings.playback =
+          separatingPlayback(findings, systemOptions(typed_.simulation), options.simulation);
     folder.writeFile("design.sto", [&](const std::filesystem::path& path) {
       bio::writeTable(bio::plannedTable(system, result.after.trial), path);
     });

@@ -166,21 +166,24 @@ void tellDesign(const DesignFindings& f, Summary& summary) {
   tellPlan(planned(f), question.observed, question.period, motions, f.result, summary);
 }
 
+std::optional<Playback> designPlayback(const DesignFindings& f,
+                                       const std::vector<std::string>& wrapAsCylinder) {
+  return playbackOf(
+      "The motion in three dimensions",
+      {{"design.sto",
+        nullptr,
+        {{"designed", f.model, f.design.system(), f.result.after.motion},
+         {"of the trial given", f.model, f.design.system(), f.result.before.motion}}}},
+      wrapAsCylinder);
+}
+
 Report designReport(const DesignFindings& f) {
   Report report;
   report.title = fmt::format("Experiment designed from {} on {}", f.trialFile, f.modelFile);
   report.verdict = verdictOf(f);
   const std::size_t channels = f.result.after.trial.measured.size();
   report.mainFigure = predicted(f, 0);
-  if (auto playback = playbackOf(
-          "The motion in three dimensions",
-          {{"design.sto",
-            nullptr,
-            {{"designed", f.model, f.design.system(), f.result.after.motion},
-             {"of the trial given", f.model, f.design.system(), f.result.before.motion}}}},
-          f.wrapAsCylinder)) {
-    report.details.push_back(*std::move(playback));
-  }
+  if (f.playback) report.details.push_back(*f.playback);
   report.details.push_back(boundTable(f));
   report.details.push_back(Paragraph{fmt::format(
       "A bound is the smallest standard deviation that an unbiased estimate can have (Cramér–Rao), "

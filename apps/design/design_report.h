@@ -20,8 +20,13 @@ struct DesignFindings {
   const bio::DesignResult& result;
   std::vector<bio::ModelParameter> parameters;       ///< of interest, then nuisance
   std::optional<info::MonteCarloResult> monteCarlo;  ///< for the parameters of interest
-  std::vector<std::string> wrapAsCylinder = {};      ///< of SystemOptions
+  std::optional<Playback> playback = {};
 };
+
+/// The designed motion in three dimensions, and that of the trial given.
+/// @param wrapAsCylinder  of the system's options
+std::optional<Playback> designPlayback(const DesignFindings& findings,
+                                       const std::vector<std::string>& wrapAsCylinder);
 
 void tellDesign(const DesignFindings& findings, Summary& summary);
 

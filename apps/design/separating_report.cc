@@ -134,6 +134,20 @@ void tellSeparation(const SeparatingFindings& f, Summary& summary) {
   tellPlan(Writing(f).planned(), q.observed, q.period, f.result.after.ranges, f.result, summary);
 }
 
+std::optional<Playback> separatingPlayback(const SeparatingFindings& f,
+                                           const bio::SystemOptions& system,
+                                           const bio::SimulationOptions& simulation) {
+  ReplayedTrials replayed(system, simulation);
+  bio::Trial designed = f.result.after.trial;
+  designed.measured.clear();  // they are predictions
+  replayed.beginTrial("design.sto", designed);
+  const ReplayedTrials::Setting setting{.step = simulation.step,
+                                        .given = f.design.question().start};
+  replayed.add("designed", f.model, designed, setting);
+  replayed.add("of the trial given", f.model, f.result.before.trial, setting);
+  return replayed.playback("The motion in three dimensions, without either effect");
+}
+
 Report separatingReport(const SeparatingFindings& f) {
   const Writing writing(f);
   Report report;
@@ -141,16 +155,7 @@ Report separatingReport(const SeparatingFindings& f) {
                              f.design.first().name, f.design.second().name, f.modelFile);
   report.verdict = writing.verdict();
   report.mainFigure = writing.predicted(0);
-  ReplayedTrials replayed(f.system, f.simulation);
-  bio::Trial designed = f.result.after.trial;
-  designed.measured.clear();  // they are predictions
-  replayed.beginTrial("design.sto", designed);
-  const ReplayedTrials::Setting setting{.step = f.simulation.step,
-                                        .given = f.design.question().start};
-  replayed.add("designed", f.model, designed, setting);
-  replayed.add("of the trial given", f.model, f.result.before.trial, setting);
-  if (auto playback = replayed.playback("The motion in three dimensions, without either effect"))
-    report.details.push_back(*std::move(playback));
+  if (f.playback) report.details.push_back(*f.playback);
   report.details.push_back(writing.telling());
   report.details.push_back(Paragraph{fmt::format(
       "The nats are the expected natural logarithm of the Bayes factor of the effect that is "

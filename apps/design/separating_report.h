@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "bio/design/separating_design.h"
@@ -15,9 +16,15 @@ struct SeparatingFindings {
   const bio::Model& model;
   const bio::discover::SeparatingDesign& design;
   const bio::discover::SeparatingResult& result;
-  bio::SystemOptions system;          ///< of the model
-  bio::SimulationOptions simulation;  ///< integrator and step
+  std::optional<Playback> playback = {};
 };
+
+/// The designed motion in three dimensions, and that of the trial given, without either effect.
+/// @param system      of the model
+/// @param simulation  integrator and step
+std::optional<Playback> separatingPlayback(const SeparatingFindings& findings,
+                                           const bio::SystemOptions& system,
+                                           const bio::SimulationOptions& simulation);
 
 void tellSeparation(const SeparatingFindings& findings, Summary& summary);
 

@@ -51,10 +51,8 @@ LiveModel::LiveModel(const std::filesystem::path& model, LiveChoice choice)
     : model_(bio::readOsim(model)),
       choice_(std::move(choice)),
       nominal_(model_, choice_.system),
-      still_(bio::view::stillPaths(model_, nominal_, choice_.system.wrapAsCylinder)) {
-  bodies_.push_back("ground");
-  for (const bio::Body& body : model_.bodies) bodies_.push_back(body.name);
-}
+      still_(bio::view::stillPaths(model_, nominal_, choice_.system.wrapAsCylinder)),
+      bodies_(bio::view::drawnBodyNames(model_)) {}
 
 void LiveModel::addTrial(const std::filesystem::path& file, const std::string& sha256) {
   bio::Trial trial = bio::readTrial(file, model_, choice_.trial);
@@ -120,11 +118,7 @@ void LiveModel::run(std::size_t trial, const Eigen::VectorXd& values, bio::Integ
 }
 
 std::vector<std::string> LiveModel::paths() const {
-  std::vector<std::string> names;
-  for (const bio::SystemMuscle& muscle : nominal_.muscles()) names.push_back(muscle.name);
-  for (const bio::SystemElasticPath& path : nominal_.elasticPaths()) names.push_back(path.name);
-  names.insert(names.end(), still_.names.begin(), still_.names.end());
-  return names;
+  return bio::view::drawnPathNames(nominal_, still_);
 }
 
 Eigen::VectorXd LiveModel::postureAt(double time) const {
@@ -155,11 +149,8 @@ LiveModel::Drawing LiveModel::drawingAt(double time) const {
   if (!system_) throw std::logic_error("drawingAt: nothing has been simulated");
   time = std::clamp(time, motion_.time.front(), motion_.time.back());
   const Eigen::VectorXd q = postureAt(time);
-  std::vector<const bio::MusclePath*> paths;
-  for (std::size_t i = 0; i < system_->numPaths(); ++i) paths.push_back(&system_->path(i));
-  for (const bio::MusclePath& path : still_.paths) paths.push_back(&path);
-  const bio::view::PlacedPaths placed =
-      bio::view::placedPaths(system_->skeleton(), bodies_, paths, q);
+  const bio::view::PlacedPaths placed = bio::view::placedPaths(
+      system_->skeleton(), bodies_, bio::view::drawnPaths(*system_, still_), q);
   Drawing drawing;
   drawing.bodies = placed.bodies;
   for (const std::vector<Eigen::Vector3d>& line : placed.lines)

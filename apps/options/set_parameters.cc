@@ -12,10 +12,6 @@
 namespace app {
 namespace {
 
-std::string withUnitOf(double value, const std::string& unit) {
-  return unit.empty() ? numberText(value) : fmt::format("{} {}", numberText(value), unit);
-}
-
 void tellSet(const bio::ModelWithParameters& set, Summary& summary) {
   if (set.numbers.empty()) return;
   nlohmann::ordered_json told = nlohmann::ordered_json::object();
@@ -24,7 +20,7 @@ void tellSet(const bio::ModelWithParameters& set, Summary& summary) {
     told[number.name] = {
         {"value", number.value}, {"unit", number.unit}, {"in_model", number.before}};
     words.push_back(fmt::format("{} = {} (in the file {})", number.name,
-                                withUnitOf(number.value, number.unit), numberText(number.before)));
+                                withUnit(number.value, number.unit), numberText(number.before)));
   }
   summary.set("set_parameters", told);
   summary.methods().say(

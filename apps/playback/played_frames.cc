@@ -81,17 +81,12 @@ std::vector<Eigen::Vector3d> thinnedLine(const std::vector<Eigen::Vector3d>& lin
 
 FrameMaker::FrameMaker(const bio::Model& model, const bio::MusculoskeletalSystem& system,
                        const std::vector<std::string>& wrapAsCylinder)
-    : system_(&system), still_(bio::view::stillPaths(model, system, wrapAsCylinder)) {
-  bodies_.push_back("ground");
-  for (const bio::Body& body : model.bodies) bodies_.push_back(body.name);
-}
+    : system_(&system),
+      bodies_(bio::view::drawnBodyNames(model)),
+      still_(bio::view::stillPaths(model, system, wrapAsCylinder)) {}
 
 std::vector<std::string> FrameMaker::paths() const {
-  std::vector<std::string> names;
-  for (const bio::SystemMuscle& muscle : system_->muscles()) names.push_back(muscle.name);
-  for (const bio::SystemElasticPath& path : system_->elasticPaths()) names.push_back(path.name);
-  names.insert(names.end(), still_.names.begin(), still_.names.end());
-  return names;
+  return bio::view::drawnPathNames(*system_, still_);
 }
 
 std::vector<bio::Placement<double>> FrameMaker::bodiesAt(const Eigen::VectorXd& q) const {
@@ -100,9 +95,7 @@ std::vector<bio::Placement<double>> FrameMaker::bodiesAt(const Eigen::VectorXd& 
 
 /// A path without a taut string in this posture has no line.
 std::vector<std::vector<Eigen::Vector3d>> FrameMaker::linesAt(const Eigen::VectorXd& q) const {
-  std::vector<const bio::MusclePath*> paths;
-  for (std::size_t i = 0; i < system_->numPaths(); ++i) paths.push_back(&system_->path(i));
-  for (const bio::MusclePath& path : still_.paths) paths.push_back(&path);
+  const std::vector<const bio::MusclePath*> paths = bio::view::drawnPaths(*system_, still_);
   const auto placed = [&](const std::vector<const bio::MusclePath*>& some) {
     return bio::view::placedPaths(system_->skeleton(), {}, some, q).lines;
   };

@@ -55,7 +55,8 @@ void ReplayedTrials::add(const std::string& name, const bio::Model& model, const
     motions_.push_back(std::move(replay->motion));
     trials_.back().motions.push_back({name, changed, system, motions_.back()});
   } catch (const std::exception&) {
-    // no system can be made of it, or no start
+    // no system can be made of it, or no start; whatever it is, a motion to look at is not worth
+    // the result, which is complete without it
   }
 }
 

@@ -25,7 +25,8 @@ import tempfile
 here = pathlib.Path(__file__).resolve().parent
 top = here.parents[1]
 STEPS = {"vi": [0.001, 0.0025, 0.005, 0.01, 0.02], "rk4": [0.0001, 0.0002, 0.0004], "cvode": [0.01]}
-AT = 0.01  # OpenSim's errors that nobody stated are taken to be this [deg]
+NOT_STATED = 0.01  # is what OpenSim's errors that nobody stated are taken to be [deg]
+DEFAULT = ("vi", 0.01)  # the program's integrator and step [s]
 
 
 class Motion:
@@ -109,7 +110,7 @@ def table(results, opensim):
             "|---|---|---|---|---|---|---|---|\n")
     for motion, runs, _ in results:
         for row in (row for row in opensim if row["motion"] == motion.name):
-            error = float(row["error_deg"] or AT)
+            error = float(row["error_deg"] or NOT_STATED)
             low, high = float(row["least_ms"]), float(row["most_ms"])
             vi = to_error(runs, "vi", error)
             ratio = "–" if vi is None else (f"{low / vi:.0f}" if low == high else f"{low / vi:.0f}–{high / vi:.0f}")
@@ -124,9 +125,8 @@ def beside_table(results):
         return ""
     text = "\nThe same program and the one beside it, in alternation, vi at 0.01 s:\n\n| motion | time [ms] | beside [ms] | ratio |\n|---|---|---|---|\n"
     for motion, runs, before in results:
-        key = ("vi", 0.01)
-        if before and key in before and key in runs:
-            text += f"| {motion.words} | {runs[key][1]:.3g} | {before[key][1]:.3g} | {runs[key][1] / before[key][1]:.2f} |\n"
+        if before and DEFAULT in before and DEFAULT in runs:
+            text += f"| {motion.words} | {runs[DEFAULT][1]:.3g} | {before[DEFAULT][1]:.3g} | {runs[DEFAULT][1] / before[DEFAULT][1]:.2f} |\n"
     return text
 
 
@@ -186,7 +186,7 @@ def main():
             if words.beside:
                 before.append(measured(words.beside, motion))
         results.append((motion, median_runs(now), median_runs(before) if before else None))
-        print(f"{motion.name}: {results[-1][1].get(('vi', AT))}", file=sys.stderr)
+        print(f"{motion.name}: {results[-1][1].get(DEFAULT)}", file=sys.stderr)
     if not results:
         print("proof.py: no motion to measure", file=sys.stderr)
         return 1

@@ -24,7 +24,6 @@ README_PARTS = {  # sections of the README, by page
     "overview.md": ["What it does", "Compared with other programs", "Where to go next", "Trials", "Limits"],
 }
 TITLES = {"tour.md": "Five minutes", "install.md": "Installing", "overview.md": "What it does, and what it does not"}
-LISTS = {"theory": "Theory", "decisions": "Decisions"}
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)\s]+)\)")
 FENCE = re.compile(r"^(```|~~~)")
 
@@ -34,22 +33,15 @@ class Wrong(Exception):
 
 
 def page_of(source, file):
-    """The page of a Markdown file, relative to the site; None: it has none."""
+    """The page of one of the Markdown files that have one, relative to the site."""
     path = file.relative_to(source)
-    top, name = path.parts[0], path.name
-    if str(path) in ("README.md", "CHANGELOG.md"):
-        return {"README.md": "overview.md", "CHANGELOG.md": "changelog.md"}[str(path)]
-    if path.suffix != ".md":
-        return None
-    if str(path) == "bench/README.md":
-        return "bench.md"
-    if top == "validation":
-        folder = path.parent.name
-        return f"validation/{'index.md' if folder == 'validation' else folder + '.md'}" if name == "README.md" else f"validation/{name}"
-    if top != "docs":
-        return None
-    inside = path.relative_to("docs/site" if path.parts[1] == "site" else "docs")
-    return "decisions/index.md" if str(inside) == "decisions/README.md" else str(inside)
+    named = {"README.md": "overview.md", "CHANGELOG.md": "changelog.md", "bench/README.md": "bench.md",
+             "validation/README.md": "validation/index.md", "docs/decisions/README.md": "decisions/index.md"}
+    if str(path) in named:
+        return named[str(path)]
+    if path.parts[0] == "validation":  # validation/ankle/README.md
+        return f"validation/{path.parent.name}.md" if path.name == "README.md" else str(path)
+    return str(path.relative_to("docs/site" if path.parts[1] == "site" else "docs"))
 
 
 def outside_code(text, change):
@@ -68,8 +60,7 @@ class Site:
         patterns = ["docs/*.md", "docs/site/*.md", "docs/theory/*.md", "docs/decisions/*.md", "validation/*.md", "validation/*/README.md"]
         self.files = sorted(file for pattern in patterns for file in source.glob(pattern))
         self.files += [source / "bench/README.md", source / "CHANGELOG.md"]
-        self.pages = {file: page_of(source, file) for file in self.files}
-        self.pages[source / "README.md"] = "overview.md"
+        self.pages = {file: page_of(source, file) for file in self.files + [source / "README.md"]}
 
     def write(self, page, text):
         path = self.folder / page
@@ -280,22 +271,14 @@ def entries(lines, indent=""):
     text = ""
     for first, below in blocks(lines):
         inner = dedented(below)
-        words = []
-        while inner and (not inner[0].strip() or not any(line.startswith(" ") for line in inner)):
-            words.append(inner.pop(0))
-            if not any(line.startswith(" ") for line in inner):
-                words, inner = words + inner, []
+        # terms below this one begin where the next line is indented
+        nested = next((k for k in range(len(inner) - 1) if inner[k + 1].startswith(" ")), len(inner))
         name, _, of = first.partition(" : ")
         text += f"{indent}- **{plain(name)}**" + (f" : *{plain(of)}*" if of else "") + "\n"
-        if any(words):
-            text += f"{indent}  <br>" + plain(" ".join(" ".join(words).split())) + "\n"
-        if inner:
-            lead = []
-            while inner and not (len(inner) > 1 and inner[1].startswith(" ")):
-                lead.append(inner.pop(0))
-            if any(lead):
-                text += f"{indent}  <br>" + plain(" ".join(" ".join(lead).split())) + "\n"
-            text += "\n" + entries(inner, indent + "  ")
+        if any(inner[:nested]):
+            text += f"{indent}  <br>" + plain(" ".join(" ".join(inner[:nested]).split())) + "\n"
+        if inner[nested:]:
+            text += "\n" + entries(inner[nested:], indent + "  ")
     return text
 
 

@@ -23,4 +23,15 @@ struct StillPaths {
 StillPaths stillPaths(const Model& model, const MusculoskeletalSystem& system,
                       const std::vector<std::string>& wrapAsCylinder);
 
+/// What is drawn of a system: its muscles, its elastic paths, then the still ones. They are valid
+/// as long as both arguments.
+std::vector<const MusclePath*> drawnPaths(const MusculoskeletalSystem& system,
+                                          const StillPaths& still);
+/// Their names.
+std::vector<std::string> drawnPathNames(const MusculoskeletalSystem& system,
+                                        const StillPaths& still);
+
+/// The bodies in the order of bodyShapes().
+std::vector<std::string> drawnBodyNames(const Model& model);
+
 }  // namespace bio::view
