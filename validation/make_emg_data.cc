@@ -1,10 +1,14 @@
 // Makes the trials of emg_data/, or checks that they are what this program makes.
 //
 //     make_emg_data MODEL.osim FOLDER            writes NAME.sto and NAME_raw.csv of every trial
-//     make_emg_data MODEL.osim FOLDER --check    compares; exit status 1 if a value differs
+//     make_emg_data MODEL.osim FOLDER --damped   writes damped_NAME.sto instead: the model itself
+//                                                with a damping of the elbow
+//     … --raw NAME                               no other raw signals than of this trial
+//     … --check                                  compares; exit status 1 if a value differs
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -29,6 +33,7 @@ constexpr double excitationRate = 200;   // [Hz]
 constexpr double goniometerRate = 100;   // [Hz]
 constexpr double lead = 0.04;            // EMG before excitation [s]
 constexpr double goniometerNoise = 0.5;  // [deg]
+constexpr double hiddenViscosity = 0.3;  // [N m s/rad]
 constexpr double notMeasured = std::numeric_limits<double>::quiet_NaN();
 constexpr double degree = std::numbers::pi / 180;
 
@@ -42,16 +47,35 @@ Eigen::Index rowsAt(double rate) {
   return static_cast<Eigen::Index>(std::lround(duration * rate)) + 1;
 }
 
-// time | one column per muscle
-bio::Table excitationTable(const validation::TrialPlan& plan) {
-  bio::Table table;
-  table.name = plan.name + " (synthetic)";
-  table.columns = {"time"};
-  table.values.resize(rowsAt(excitationRate), 9);
-  for (Eigen::Index i = 0; i < table.values.rows(); ++i) {
-    table.values(i, 0) = static_cast<double>(i) / excitationRate;
+// Of the muscles with electrodes those that the model has, by their place in muscleShares().
+std::vector<std::size_t> recordedMuscles(const bio::Model& model) {
+  std::vector<std::size_t> recorded;
+  for (std::size_t k = 0; k < validation::muscleShares().size(); ++k) {
+    const auto hasName = [&](const bio::Muscle& muscle) {
+      return muscle.name == validation::muscleShares()[k].name;
+    };
+    if (std::ranges::any_of(model.muscles, hasName)) recorded.push_back(k);
   }
-  for (const validation::MuscleShare& muscle : validation::muscleShares()) {
+  return recorded;
+}
+
+bio::Table emptyTable(double rate, const std::vector<std::size_t>& recorded) {
+  bio::Table table;
+  table.columns = {"time"};
+  table.values.resize(rowsAt(rate), static_cast<Eigen::Index>(recorded.size()) + 1);
+  for (Eigen::Index i = 0; i < table.values.rows(); ++i) {
+    table.values(i, 0) = static_cast<double>(i) / rate;
+  }
+  return table;
+}
+
+// time | one column per muscle
+bio::Table excitationTable(const validation::TrialPlan& plan,
+                           const std::vector<std::size_t>& recorded) {
+  bio::Table table = emptyTable(excitationRate, recorded);
+  table.name = plan.name + " (synthetic)";
+  for (const std::size_t k : recorded) {
+    const validation::MuscleShare& muscle = validation::muscleShares()[k];
     const auto column = static_cast<Eigen::Index>(table.columns.size());
     for (Eigen::Index i = 0; i < table.values.rows(); ++i) {
       table.values(i, column) = rounded(excitation(plan, muscle, table.values(i, 0)), 5);
@@ -109,16 +133,12 @@ void addAngle(bio::Table& table, const Eigen::VectorXd& angle_deg, double rate) 
   }
 }
 
-bio::Table rawTable(const validation::TrialPlan& plan) {
-  bio::Table table;
-  table.columns = {"time"};
-  const Eigen::Index rows = rowsAt(rawRate);
-  table.values.resize(rows, 9);
-  for (Eigen::Index i = 0; i < rows; ++i) table.values(i, 0) = static_cast<double>(i) / rawRate;
-  for (std::size_t k = 0; k < validation::muscleShares().size(); ++k) {
+bio::Table rawTable(const validation::TrialPlan& plan, const std::vector<std::size_t>& recorded) {
+  bio::Table table = emptyTable(rawRate, recorded);
+  for (const std::size_t k : recorded) {
+    table.values.col(static_cast<Eigen::Index>(table.columns.size())) =
+        validation::electrodeSignal(plan, k, rawRate, table.values.rows(), lead).array().round();
     table.columns.push_back(validation::muscleShares()[k].name + "_uV");
-    table.values.col(static_cast<Eigen::Index>(k) + 1) =
-        validation::electrodeSignal(plan, k, rawRate, rows, lead).array().round();
   }
   return table;
 }
@@ -151,30 +171,46 @@ int differences(const bio::Table& made, const std::filesystem::path& file) {
   return count;
 }
 
-int run(const std::string& modelFile, const std::filesystem::path& folder, bool check) {
-  const bio::Model model = bio::readOsim(modelFile);
+struct Job {
+  bio::Model model;
+  std::filesystem::path folder;
+  bool check = false;   // compare instead of writing
+  bool damped = false;  // the trials of a damped arm instead of the subject's
+  std::string raw;      // the only trial whose raw signals are made; empty: all
+};
+
+// Number of cells that differ, 0 where nothing is compared.
+int writtenOrCompared(const bio::Table& table, const std::string& name, const Job& job) {
+  const std::filesystem::path file = job.folder / name;
+  if (job.check) return differences(table, file);
+  bio::writeTable(table, file);
+  return 0;
+}
+
+int run(const Job& job) {
+  const std::vector<std::size_t> recorded = recordedMuscles(job.model);
+  const bio::Model person = job.damped ? validation::dampedArmOf(job.model, hiddenViscosity)
+                                       : validation::subjectOf(job.model);
   int count = 0;
   for (const validation::TrialPlan& plan : validation::trialPlans()) {
-    bio::Table trial = excitationTable(plan);
-    bio::Table raw = rawTable(plan);
-    const Eigen::VectorXd subject =
-        motionOf(validation::subjectOf(model), trial, plan.startAngle_deg);
-    const Eigen::VectorXd nominal = motionOf(model, trial, plan.startAngle_deg);
+    bio::Table trial = excitationTable(plan, recorded);
+    const Eigen::VectorXd subject = motionOf(person, trial, plan.startAngle_deg);
+    const Eigen::VectorXd nominal = motionOf(job.model, trial, plan.startAngle_deg);
     fmt::print("{}: subject {:.1f} to {:.1f}°, model {:.1f} to {:.1f}°, RMS difference {:.1f}°\n",
                plan.name, subject.minCoeff(), subject.maxCoeff(), nominal.minCoeff(),
                nominal.maxCoeff(),
                (subject - nominal).norm() / std::sqrt(static_cast<double>(subject.size())));
     const Eigen::VectorXd angle = measured(subject, plan.seed);
     addAngle(trial, angle, excitationRate);
-    addAngle(raw, angle, rawRate);
-    const auto trialFile = folder / (plan.name + ".sto");
-    const auto rawFile = folder / (plan.name + "_raw.csv");
-    if (check) {
-      count += differences(trial, trialFile) + differences(raw, rawFile);
-    } else {
-      bio::writeTable(trial, trialFile);
-      bio::writeTable(raw, rawFile);
+    if (job.damped) {
+      count += writtenOrCompared(trial, "damped_" + plan.name + ".sto", job);
+      continue;
     }
+    count += writtenOrCompared(trial, plan.name + ".sto", job);
+    if (!job.raw.empty() && job.raw != plan.name) continue;
+    bio::Table raw = rawTable(plan, recorded);
+    addAngle(raw, angle, rawRate);
+    count += writtenOrCompared(raw, plan.name + "_raw.csv", job);
   }
   return count == 0 ? 0 : 1;
 }
@@ -182,13 +218,23 @@ int run(const std::string& modelFile, const std::filesystem::path& folder, bool 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool check = argc == 4 && std::string(argv[3]) == "--check";
-  if (argc != 3 && !check) {
-    fmt::print(stderr, "make_emg_data MODEL.osim FOLDER [--check]\n");
+  std::vector<std::string> given(argv + 1, argv + argc);
+  std::string raw;
+  if (const auto option = std::ranges::find(given, "--raw");
+      option != given.end() && option + 1 != given.end()) {
+    raw = option[1];
+    given.erase(option, option + 2);
+  }
+  const auto isKnown = [](const std::string& option) {
+    return option == "--check" || option == "--damped";
+  };
+  if (given.size() < 2 || !std::all_of(given.begin() + 2, given.end(), isKnown)) {
+    fmt::print(stderr, "make_emg_data MODEL.osim FOLDER [--damped] [--raw NAME] [--check]\n");
     return 2;
   }
   try {
-    return run(argv[1], argv[2], check);
+    return run({bio::readOsim(given[0]), given[1], std::ranges::count(given, "--check") > 0,
+                std::ranges::count(given, "--damped") > 0, raw});
   } catch (const std::exception& e) {
     fmt::print(stderr, "make_emg_data: {}\n", e.what());
     return 2;

@@ -63,4 +63,21 @@ TEST(Messages, AreWhatTheProgramSays) {
   EXPECT_GE(shown, 10);
 }
 
+// Its discover and explore are those of the page; the search takes fifteen seconds.
+TEST(FreeElbow, TourPrintsWhatItShows) {
+  const Place place;
+  for (const std::string& command : documents::shellLines(site / "free_elbow.md"))
+    EXPECT_EQ(place.run(command).status, 0) << command;
+  int shown = 0;
+  for (const documents::ShownRun& run : documents::consoleRuns(site / "free_elbow.md")) {
+    const auto result = place.run(run.command);
+    EXPECT_EQ(result.status, 0) << run.command << result.err;
+    for (const std::string& line : run.output) {
+      EXPECT_THAT("\n" + result.out, testing::HasSubstr("\n" + line + "\n")) << run.command;
+      ++shown;
+    }
+  }
+  EXPECT_GE(shown, 6);
+}
+
 }  // namespace
