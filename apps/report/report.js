@@ -3,6 +3,23 @@
 (() => {
   const font = '14px "Source Sans 3", "Segoe UI", "Liberation Sans", Arial, sans-serif';
 
+  // Curves have the colours of paper; on a dark screen those that would be lost are lighter. Paper stays light.
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  let isPrinting = false;
+  const lighter = { "#0072B2": "#56B4E9", "#56B4E9": "#B6A8F0", "#000000": "#E8E8E6", "#009E73": "#2CC79A", "#D55E00": "#FF8A3D",
+    "#808080": "#A8ACB1" };
+  const onScreen = colour => dark.matches && !isPrinting ? lighter[colour] || colour : colour;
+  const style = name => isPrinting ? { "--ink": "#1a1a1a", "--grid": "#e2e2e2", "--tick": "#888" }[name]
+    : getComputedStyle(document.documentElement).getPropertyValue(name);
+  const plots = [], samples = [];
+  const recolour = () => {
+    plots.forEach(plot => plot.redraw(false));
+    samples.forEach(({ svg, curve }) => paint(svg, curve));
+  };
+  dark.addEventListener("change", recolour);
+  addEventListener("beforeprint", () => { isPrinting = true; recolour(); });
+  addEventListener("afterprint", () => { isPrinting = false; recolour(); });
+
   const numberText = (value, digits) => {
     if (value == null) return "–";
     const short = Number(value.toPrecision(digits));
@@ -42,9 +59,13 @@
     // On the left the axis is as wide as its longest number.
     size: (plot, values) => side === "x" ? 34 :
       18 + 8 * Math.max(2, ...(values || []).map(v => v === null ? 0 : v.length)),
-    stroke: "#1a1a1a", grid: { stroke: "#e2e2e2", width: 1 }, ticks: { stroke: "#888", width: 1 },
+    stroke: () => style("--ink"), grid: { stroke: () => style("--grid"), width: 1 },
+    ticks: { stroke: () => style("--tick"), width: 1 },
     values: (plot, values) => values.map(v => v === null ? "" : numberText(v, 8)),
   });
+
+  const paint = (svg, curve) =>
+    svg.firstChild.setAttribute(curve.style === "points" ? "fill" : "stroke", onScreen(curve.colour));
 
   // A piece of the curve for the legend: a row in black and white is told by its dashes.
   const sample = curve => {
@@ -54,9 +75,11 @@
       return element;
     };
     const svg = one("svg", { width: 34, height: 10, style: "display:block", "aria-hidden": "true" });
-    svg.append(curve.style === "points" ? one("circle", { cx: 17, cy: 5, r: 4, fill: curve.colour })
-      : one("path", { d: "M0 5H34", stroke: curve.colour, "stroke-width": curve.style === "path" ? 1.5 : 2.5,
+    svg.append(curve.style === "points" ? one("circle", { cx: 17, cy: 5, r: 4 })
+      : one("path", { d: "M0 5H34", "stroke-width": curve.style === "path" ? 1.5 : 2.5,
         "stroke-dasharray": curve.dashes.join(" ") || "none" }));
+    paint(svg, curve);
+    samples.push({ svg, curve });
     return svg;
   };
 
@@ -69,7 +92,7 @@
     const series = [{ label: figure.xLabel, value: (plot, v) => text(v) }];
     const bands = [], curveOf = new Map();
     curves.forEach(curve => {
-      const colour = curve.colour;
+      const colour = () => onScreen(curve.colour);
       const points = curve.style === "points";
       const size = curve.x.length > 600 ? 4 : curve.x.length > 60 ? 5 : 7;
       curveOf.set(series.length, curve);
@@ -85,7 +108,7 @@
         const upper = series.length + 1;
         const edge = { stroke: "transparent", width: 0, points: { show: false }, class: "band" };
         series.push({ ...edge, label: "low" }, { ...edge, label: "high" });
-        bands.push({ series: [upper, upper - 1], fill: colour + "33" });
+        bands.push({ series: [upper, upper - 1], fill: () => colour() + "33" });
       }
     });
     const plot = new uPlot({
@@ -98,6 +121,7 @@
       cursor: { points: { size: 7 }, drag: { x: true, y: true, uni: 30 } },
       legend: { live: true },
     }, data, place);
+    plots.push(plot);
 
     // The edges of a band need no line of their own in the legend.
     const rows = place.querySelectorAll(".u-legend .u-series");

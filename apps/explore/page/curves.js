@@ -108,7 +108,8 @@ class Curves {
     const chart = new uPlot({
       width: place.clientWidth, height, series: [{ label: "time [s]" }, ...series],
       scales: { x: { time: false } }, axes: [axis("Time [s]", "x"), axis(yLabel, "y")],
-      legend: { live: false }, cursor: { y: false },
+      legend: { live: false, markers: { width: 2, stroke: (u, i) => i ? series[i - 1].stroke : null,
+        fill: (u, i) => i && series[i - 1].points ? series[i - 1].stroke : null } }, cursor: { y: false },
       hooks: { draw: [u => this.drawTime(u)] },
     }, [[0], ...series.map(() => [null])], place);
     return chart;

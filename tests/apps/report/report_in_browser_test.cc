@@ -39,13 +39,14 @@ Figure waves(AxisScale scale, std::size_t curves) {
   return figure;
 }
 
-ProgramResult openInBrowser(const std::string& html, const ScratchFolder& scratch) {
+ProgramResult openInBrowser(const std::string& html, const ScratchFolder& scratch,
+                            const char* setting = "--window-position=0,0") {
   const std::string page = scratch.file("report.html", html);
   return support::runProgram(
       {FISHERHILL_CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
        "--no-first-run", "--disable-background-networking", "--disable-component-update",
        "--disable-sync", "--user-data-dir=" + (scratch / "profile").string(),
-       "--enable-logging=stderr", "--window-size=1280,1600", "--virtual-time-budget=2000",
+       "--enable-logging=stderr", "--window-size=1280,1600", "--virtual-time-budget=2000", setting,
        "--dump-dom", "file://" + page},
       scratch.path());
 }
@@ -71,6 +72,26 @@ TEST(ReportInBrowser, DrawsEveryFigureWithoutAConsoleMessage) {
   EXPECT_EQ(canvases, 4u);
   // A refused request would be told here as well: the page's own policy forbids all of them.
   EXPECT_THAT(result.err, testing::Not(testing::HasSubstr("CONSOLE")));
+}
+
+// The legend's samples are elements of the page, and are painted as the curves are.
+TEST(ReportInBrowser, HasLighterCurvesOnADarkScreen) {
+  Report report;
+  report.title = "A test";
+  report.mainFigure = waves(AxisScale::linear, 2);
+  const std::string html = renderReport(report, Summary({}));
+  const auto painted = [&](const char* setting) {
+    const ScratchFolder scratch;
+    const ProgramResult result = openInBrowser(html, scratch, setting);
+    EXPECT_THAT(result.err, testing::Not(testing::HasSubstr("CONSOLE")));
+    return result.out.substr(result.out.find("<table class=\"u-legend"));
+  };
+  const std::string light = painted("--blink-settings=preferredColorScheme=1");
+  EXPECT_THAT(light, testing::HasSubstr("stroke=\"#0072B2\""));
+  EXPECT_THAT(light, testing::Not(testing::HasSubstr("stroke=\"#56B4E9\"")));
+  const std::string dark = painted("--blink-settings=preferredColorScheme=0");
+  EXPECT_THAT(dark, testing::HasSubstr("stroke=\"#56B4E9\""));
+  EXPECT_THAT(dark, testing::Not(testing::HasSubstr("stroke=\"#0072B2\"")));
 }
 
 TEST(ReportInBrowser, WouldBeHeardIfSomethingWentWrong) {
