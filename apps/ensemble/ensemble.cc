@@ -251,19 +251,14 @@ class Ensemble : public Command {
     for (std::size_t channel = 0; channel < f.channels.size(); ++channel) {
       const bio::Observable& what = study.ensemble.channels()[channel].what;
       if (!what.isCoordinate()) continue;
+      const std::uint64_t left = f.channels[channel].leftRange;
+      if (left == 0) continue;
       const bio::Coordinate& c = bio::findCoordinate(study.ensemble.model(), what.object);
       const auto& [factor, unit] = study.table.channels()[channel].unit;
-      const auto& lowest = f.channels[channel].outputs[3];
-      const auto& highest = f.channels[channel].outputs[4];
-      std::uint64_t left = 0;
-      for (std::size_t i = 0; i < lowest.size(); ++i) {
-        left += bio::leavesRange(c, lowest[i] / factor, highest[i] / factor) ? 1 : 0;
-      }
-      if (left == 0) continue;
       summary.warn(fmt::format(
           "in {} of {} simulations {} leaves its range, {:.4g} to {:.4g} {}, by more than a tenth "
           "of it",
-          left, lowest.size(), c.name, c.rangeMin * factor, c.rangeMax * factor, unit));
+          left, study.ensemble.count(), c.name, c.rangeMin * factor, c.rangeMax * factor, unit));
     }
   }
 
@@ -318,11 +313,11 @@ class Ensemble : public Command {
         [&](std::uint64_t number) { return study.table.parse(number, file.row(number)); },
         output_,
         draws_};
-    collect(findings);
+    collect(findings, sobol_);
     const auto p = static_cast<int>(study.ensemble.laws().parameters.size());
     for (ChannelFindings& channel : findings.channels) {
       if (!sobol_) break;
-      channel.sobol = bio::sobolOf(channel.outputs[bio::ensembleOutputNamed(output_)], p, seed);
+      channel.sobol = bio::sobolOf(channel.decomposed, p, seed);
     }
     return findings;
   }

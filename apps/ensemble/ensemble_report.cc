@@ -17,9 +17,6 @@ std::string csvCell(double value) {
   return cellText(value, 9);
 }
 
-/// Most memory for the motions' courses in a pass over the rows [bytes]; one column at least.
-constexpr std::uint64_t mostKept = std::uint64_t{64} << 20;
-
 /// The output of a channel that Sobol's indices are of: "final", or "elbow_flexion.final".
 std::string outputOf(const EnsembleFindings& f, std::size_t c) {
   if (f.table.isOneCoordinate()) return f.output;
@@ -39,7 +36,7 @@ std::string verdictOf(const EnsembleFindings& f) {
                                  finished, f.ensemble.count(), parameters.size());
   for (std::size_t c = 0; c < f.channels.size(); ++c) {
     const ShownChannel& channel = f.table.channels()[c];
-    const bio::Spread last = bio::spreadOf(f.channels[c].outputs[2]);
+    const bio::Spread& last = f.channels[c].outputs[2];
     text += fmt::format(" Median of the final {}: {}; 90 % lie between {} and {}.", channel.name,
                         withUnit(last.p50, channel.unit.name), numberText(last.p5),
                         withUnit(last.p95, channel.unit.name));
@@ -83,7 +80,7 @@ Table outputTable(const EnsembleFindings& f, std::size_t c) {
                           "standard deviation", "5 %", "median", "95 %"}};
   for (std::size_t i = 0; i < bio::ensembleOutputs().size(); ++i) {
     const bio::EnsembleOutput& output = bio::ensembleOutputs()[i];
-    const bio::Spread s = bio::spreadOf(f.channels[c].outputs[i]);
+    const bio::Spread& s = f.channels[c].outputs[i];
     table.rows.push_back({output.words, numberText(nominalOf(f, c, output)), numberText(s.mean),
                           numberText(s.sd), numberText(s.p5), numberText(s.p50),
                           numberText(s.p95)});
@@ -134,7 +131,7 @@ Json channelJson(const EnsembleFindings& f, std::size_t c) {
   json["unit"] = f.table.channels()[c].unit.name;
   for (std::size_t i = 0; i < bio::ensembleOutputs().size(); ++i) {
     const bio::EnsembleOutput& output = bio::ensembleOutputs()[i];
-    const bio::Spread s = bio::spreadOf(f.channels[c].outputs[i]);
+    const bio::Spread& s = f.channels[c].outputs[i];
     json[output.name] = {{"nominal", nominalOf(f, c, output)},
                          {"mean", s.mean},
                          {"sd", s.sd},
@@ -162,37 +159,57 @@ Json channelJson(const EnsembleFindings& f, std::size_t c) {
   return json;
 }
 
+/// What is counted or kept of a row in the first pass.
+void countRow(EnsembleFindings& f, const DrawTable::Row& row, bool decomposed) {
+  ++f.outcomes[row.outcome];
+  const std::size_t outputs = bio::ensembleOutputs().size();
+  for (std::size_t c = 0; c < f.channels.size(); ++c) {
+    const double* of = row.outputs.data() + c * outputs;
+    if (decomposed) f.channels[c].decomposed.push_back(of[bio::ensembleOutputNamed(f.output)]);
+    const bio::Observable& what = f.ensemble.channels()[c].what;
+    if (!what.isCoordinate()) continue;
+    const double factor = f.table.channels()[c].unit.factor;
+    const bio::Coordinate& coordinate = bio::findCoordinate(f.ensemble.model(), what.object);
+    if (bio::leavesRange(coordinate, of[bio::ensembleOutputNamed("min")] / factor,
+                         of[bio::ensembleOutputNamed("max")] / factor)) {
+      ++f.channels[c].leftRange;
+    }
+  }
+}
+
 }  // namespace
 
-void collect(EnsembleFindings& f) {
+void collect(EnsembleFindings& f, bool decomposed) {
   const std::vector<double>& time = f.table.course();
   const std::size_t outputs = bio::ensembleOutputs().size();
-  const std::size_t all = f.table.channels().size() * time.size();
-  f.channels.assign(f.table.channels().size(), {std::vector<std::vector<double>>(outputs)});
-  const std::uint64_t each = std::max<std::uint64_t>(f.ensemble.count(), 1) * sizeof(double);
-  const std::size_t together = std::max<std::uint64_t>(1, mostKept / each);
-  for (std::size_t begin = 0; begin < all; begin += together) {
-    const std::size_t end = std::min(begin + together, all);
-    std::vector<std::vector<double>> columns(end - begin);
+  f.channels.resize(f.table.channels().size());
+  // per channel its outputs, then its course
+  const std::size_t each = outputs + time.size();
+  info::PassQuantiles columns = bio::spreadColumns(f.channels.size() * each);
+  bool isFirst = true;
+  do {
     for (std::uint64_t number = 0; number < f.ensemble.count(); ++number) {
       const DrawTable::Row row = f.row(number);
-      if (begin == 0) {
-        ++f.outcomes[row.outcome];
-        for (std::size_t i = 0; i < row.outputs.size(); ++i)
-          f.channels[i / outputs].outputs[i % outputs].push_back(row.outputs[i]);
-      }
-      for (std::size_t i = begin; i < end; ++i) {
-        if (std::isfinite(row.course[i])) columns[i - begin].push_back(row.course[i]);
+      if (isFirst) countRow(f, row, decomposed);
+      for (std::size_t c = 0; c < f.channels.size(); ++c) {
+        for (std::size_t i = 0; i < outputs; ++i)
+          columns.add(c * each + i, row.outputs[c * outputs + i]);
+        for (std::size_t i = 0; i < time.size(); ++i)
+          columns.add(c * each + outputs + i, row.course[c * time.size() + i]);
       }
     }
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t c = i / time.size(), at = i % time.size();
-      const bio::Spread s = bio::spreadOf(columns[i - begin]);
-      Band& band = f.channels[c].band;
-      band.time.push_back(time[at]);
+    isFirst = false;
+  } while (columns.wantsAnotherPass());
+  for (std::size_t c = 0; c < f.channels.size(); ++c) {
+    for (std::size_t i = 0; i < outputs; ++i)
+      f.channels[c].outputs.push_back(bio::spreadOf(columns, c * each + i));
+    Band& band = f.channels[c].band;
+    for (std::size_t i = 0; i < time.size(); ++i) {
+      const bio::Spread s = bio::spreadOf(columns, c * each + outputs + i);
+      band.time.push_back(time[i]);
       band.nominal.push_back(
           f.table.channels()[c].unit.factor *
-          f.ensemble.nominal().channels[c].atCourse[static_cast<Eigen::Index>(at)]);
+          f.ensemble.nominal().channels[c].atCourse[static_cast<Eigen::Index>(i)]);
       band.mean.push_back(s.mean);
       band.p5.push_back(s.p5);
       band.p50.push_back(s.p50);

@@ -19,7 +19,9 @@ struct Band {
 
 /// The findings about a channel.
 struct ChannelFindings {
-  std::vector<std::vector<double>> outputs;  ///< by output, then by row; NaN: none
+  std::vector<bio::Spread> outputs = {};  ///< by output, in shown units
+  std::vector<double> decomposed = {};    ///< for Sobol's indices, by row: that output; NaN: none
+  std::uint64_t leftRange = 0;            ///< number of runs that leave the coordinate's range
   Band band = {};
   std::optional<bio::SobolFinding> sobol = {};
 };
@@ -36,8 +38,10 @@ struct EnsembleFindings {
   std::vector<ChannelFindings> channels = {};          ///< as the table has them
 };
 
-/// Fills outcomes and channels, without Sobol's indices, from the rows.
-void collect(EnsembleFindings& findings);
+/// Fills outcomes and channels, without Sobol's indices, from the rows, in several passes that keep
+/// no more of long columns than info::PassQuantiles does.
+/// @param decomposed whether the values of the output for Sobol's indices are kept
+void collect(EnsembleFindings& findings, bool decomposed);
 
 /// draws.csv, band.csv and sobol.csv
 void writeDraws(const EnsembleFindings& findings, std::ostream& out);

@@ -23,8 +23,9 @@ std::string damageIn(const RowFile& file) {
 
 std::size_t computeMissing(WorkerPool& pool, int threads, RowFile& file, std::uint64_t total,
                            RowWork work, const CommandContext& context, const std::string& things) {
+  file.expect(total);
   for (std::uint64_t number = 0; number < total; ++number) {
-    if (!file.contains(number)) work.numbers.push_back(number);
+    if (!file.contains(number)) work.numbers.add(number);
   }
   const std::size_t missing = work.numbers.size();
   std::uint64_t done = total - missing;

@@ -56,6 +56,12 @@ class RowMessage {
   std::vector<char> bytes_;
 };
 
+RowNumbers rising(const std::vector<std::uint64_t>& numbers) {
+  RowNumbers ranges;
+  for (const std::uint64_t number : numbers) ranges.add(number);
+  return ranges;
+}
+
 /// The work as rank 0 knows it: its own threads and the messages of the others meet here.
 class Handout {
  public:
@@ -69,9 +75,8 @@ class Handout {
     const std::size_t batch = work_->together;
     const std::size_t whole = (std::max(share, atLeast) + batch - 1) / batch * batch;
     const std::size_t size = std::min(left, whole);
-    const auto from = work_->numbers.begin() + static_cast<std::ptrdiff_t>(next_);
-    next_ += size;
-    return {from, from + static_cast<std::ptrdiff_t>(size)};
+    const auto first = std::exchange(next_, next_ + size);
+    return work_->numbers.part(first, size);
   }
   void stop() {
     const std::lock_guard lock(mutex_);
@@ -149,7 +154,7 @@ class MpiPool : public WorkerPool {
           untilStopped.rows = [&](std::span<const std::uint64_t> batch) {
             return handout.isStopped() ? std::vector<std::string>(batch.size()) : work.rows(batch);
           };
-          inBatches(untilStopped, numbers, threads,
+          inBatches(untilStopped, rising(numbers), threads,
                     [&](std::uint64_t number, const std::string& row) {
                       if (!handout.isStopped()) handout.finished(number, row);
                     });
@@ -257,10 +262,11 @@ class MpiPool : public WorkerPool {
       sent = Clock::now();
     };
     if (threads == 1) {
-      inBatches(untilInterrupted, numbers, 1, [&](std::uint64_t number, const std::string& row) {
-        message.add(number, row);
-        sendIfLate();
-      });
+      inBatches(untilInterrupted, rising(numbers), 1,
+                [&](std::uint64_t number, const std::string& row) {
+                  message.add(number, row);
+                  sendIfLate();
+                });
       return;
     }
     std::mutex mutex;
@@ -272,7 +278,7 @@ class MpiPool : public WorkerPool {
           const std::lock_guard lock(mutex);
           message.add(number, row);
         };
-        inBatches(untilInterrupted, numbers, threads, take);
+        inBatches(untilInterrupted, rising(numbers), threads, take);
       } catch (...) {
         failure = std::current_exception();
       }

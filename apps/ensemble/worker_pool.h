@@ -11,9 +11,27 @@
 
 namespace app {
 
+/// Rising numbers, kept as ranges.
+class RowNumbers {
+ public:
+  /// @param number greater than all before
+  void add(std::uint64_t number);
+  std::size_t size() const { return size_; }
+  /// At most `count` numbers from the place `first` on.
+  std::vector<std::uint64_t> part(std::size_t first, std::size_t count) const;
+
+ private:
+  struct Range {
+    std::uint64_t first;  ///< number
+    std::size_t place;    ///< of it among all
+  };
+  std::vector<Range> ranges_;
+  std::size_t size_ = 0;
+};
+
 /// Numbered rows to compute.
 struct RowWork {
-  std::vector<std::uint64_t> numbers;  ///< numbers of the rows; used by the root rank only
+  RowNumbers numbers;  ///< numbers of the rows; used by the root rank only
   /// Computes the texts of some rows, each a pure function of its number; called from several
   /// threads.
   std::function<std::vector<std::string>(std::span<const std::uint64_t> numbers)> rows;
@@ -27,7 +45,7 @@ struct RowWork {
 /// Computes the rows on several threads and passes each to `take`, which is called from all
 /// threads.
 /// @throws what `rows` and `take` throw
-void inBatches(const RowWork& work, std::span<const std::uint64_t> numbers, int threads,
+void inBatches(const RowWork& work, const RowNumbers& numbers, int threads,
                const std::function<void(std::uint64_t number, const std::string& row)>& take);
 
 /// A pool of workers that compute rows: the threads of one process, or of several MPI ranks that

@@ -42,6 +42,9 @@ class RowFile {
   /// @throws std::out_of_range if it is not contained, std::runtime_error if it cannot be read
   std::string row(std::uint64_t number) const;
 
+  /// Makes room for the numbers below `count`: eight bytes each.
+  void expect(std::uint64_t count) { places_.reserve(count); }
+
   /// Adds a row.
   /// @param text the cells after "number,", one fewer than there are columns
   /// @throws std::runtime_error if it cannot be written

@@ -48,6 +48,15 @@ Spread spreadOf(const std::vector<double>& values) {
           info::quantileOf(finite, 0.95)};
 }
 
+info::PassQuantiles spreadColumns(std::size_t columns) {
+  return {columns, {0.05, 0.5, 0.95}};
+}
+
+Spread spreadOf(const info::PassQuantiles& columns, std::size_t column) {
+  return {columns.mean(column), columns.sd(column), columns.quantile(column, 0),
+          columns.quantile(column, 1), columns.quantile(column, 2)};
+}
+
 std::vector<double> bandTimes(double startTime, double duration, int points) {
   std::vector<double> times;
   for (int i = 0; i < points; ++i) times.push_back(startTime + duration * i / (points - 1));

@@ -6,6 +6,7 @@
 
 #include "bio/analysis/ensemble.h"
 #include "info/probability/global_sensitivity.h"
+#include "info/probability/pass_quantiles.h"
 
 /// Statistics of the runs of an ensemble.
 namespace bio {
@@ -26,9 +27,14 @@ std::size_t ensembleOutputNamed(const std::string& name);
 struct Spread {
   double mean;          ///< NaN without a finite value
   double sd;            ///< NaN with fewer than two
-  double p5, p50, p95;  ///< by quantileOf (quantile.h); NaN without a finite value
+  double p5, p50, p95;  ///< as quantileOf (quantile.h) has them; NaN without a finite value
 };
 Spread spreadOf(const std::vector<double>& values);
+
+/// Percentiles of columns of any length, for spreadOf(columns, column).
+info::PassQuantiles spreadColumns(std::size_t columns);
+/// @param columns  of spreadColumns(), when no pass is wanted
+Spread spreadOf(const info::PassQuantiles& columns, std::size_t column);
 
 /// Times of a percentile band: first and last of the trial, and between them equal distances [s].
 /// @param points ≥ 2
