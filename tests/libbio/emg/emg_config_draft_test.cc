@@ -17,9 +17,8 @@ namespace {
 using support::ScratchFolder;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
-std::string table() {
+std::string tableOfElectrodes() {
   std::string text = "time,biceps_uV,triceps [mV],elbow_deg,force [N]\n";
   for (int i = 0; i < 400; ++i) {
     text += std::to_string(i) + "e-3," + std::to_string((i * 37) % 101 - 50) + "," +
@@ -28,7 +27,7 @@ std::string table() {
   return text;
 }
 
-std::string textOf(const std::filesystem::path& file) {
+std::string contentOfDraft(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::stringstream text;
   text << stream.rdbuf();
@@ -37,7 +36,7 @@ std::string textOf(const std::filesystem::path& file) {
 
 TEST(EmgConfigDraft, IsReadAsItIsWhereUnitsTellWhatIsEmg) {
   const ScratchFolder scratch;
-  const std::string raw = scratch.file("raw.csv", table());
+  const std::string raw = scratch.file("raw.csv", tableOfElectrodes());
   const EmgConfigDraft draft = draftEmgConfig({raw});
   EXPECT_EQ(draft.channels, 4);
   EXPECT_EQ(draft.electrodes, 2);
@@ -81,7 +80,7 @@ TEST(EmgConfigDraft, SaysWhatIsMissing) {
   EXPECT_THAT(draft.text, HasSubstr("column = 2"));
   EXPECT_THAT(draft.text, HasSubstr("# rate_Hz =             # needed"));
   EXPECT_THAT(draft.text, HasSubstr("# [[electrode]]"));
-  const EmgConfigDraft two = draftEmgConfig({scratch.file("a.csv", table()), columns});
+  const EmgConfigDraft two = draftEmgConfig({scratch.file("a.csv", tableOfElectrodes()), columns});
   EXPECT_FALSE(two.complete);
   EXPECT_THAT(two.text, HasSubstr("[[recording.channel]]"));
   EXPECT_THAT(two.text, HasSubstr("# offset_s = 0          # needed"));
@@ -94,18 +93,20 @@ TEST(EmgConfigDraft, NamesOfAnyKindAreQuoted) {
   const std::string raw = scratch.file("raw.csv", text);
   const std::string draft = draftEmgConfig({raw}).text;
   const EmgConfigFile config = readEmgConfig(scratch.file("c.toml", draft));
-  EXPECT_EQ(config.emg.electrodes.front().channel, "a\\\"b_mV");
+  const std::string name = readRecording(raw).channels.front().name;
+  EXPECT_THAT(name, HasSubstr("a\\\""));
+  EXPECT_EQ(config.emg.electrodes.front().channel, name);
 }
 
 TEST(EmgConfigDraft, AFileThatIsThereStays) {
   const ScratchFolder scratch;
   const std::string there = scratch.file("c.toml", "mine");
   EXPECT_THROW(writeNewFile("other", there), FileError);
-  EXPECT_EQ(textOf(there), "mine");
+  EXPECT_EQ(contentOfDraft(there), "mine");
   std::filesystem::create_symlink(scratch / "nothing", scratch / "link.toml");
   EXPECT_THROW(writeNewFile("other", scratch / "link.toml"), FileError);
   writeNewFile("new", scratch / "new.toml");
-  EXPECT_EQ(textOf(scratch / "new.toml"), "new");
+  EXPECT_EQ(contentOfDraft(scratch / "new.toml"), "new");
   EXPECT_THROW(draftEmgConfig({}), std::invalid_argument);
   EXPECT_THROW(draftEmgConfig({(scratch / "none.csv").string()}), FileError);
 }
