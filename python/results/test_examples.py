@@ -57,7 +57,7 @@ class Examples(unittest.TestCase):
 
 class Document(unittest.TestCase):
     def test_its_examples_run(self):
-        """All but the study, which takes minutes, with the model and the trial that they take for granted."""
+        """All but the study, which beside_program/test_study.py runs, with the model and the trial that they take for granted."""
         model = fh.load_model("models/elbow8.osim")
         known = {"fisherhill": fh, "np": np, "model": model, "trial": fh.load_trial("emg_data/curl_slow.sto", model)}
         blocks = re.findall(r"^```python\n(.*?)^```", pathlib.Path("docs/python.md").read_text(encoding="utf-8"), re.M | re.S)
