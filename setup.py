@@ -1,7 +1,8 @@
 """Builds the package `fisherhill`: CMake makes the compiled module (target fisherhill_python), setuptools the rest.
 
 What has been compiled in a build folder is used again. The folder is the one in the environment variable
-FISHERHILL_BUILD, else build/program where `./start` has made it, else build/pip.
+FISHERHILL_BUILD, else build/program where `./start` has made it, else build/pip. What is missing for that is said in one
+line before anything is compiled.
 """
 
 import importlib.util
@@ -17,6 +18,19 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 source = pathlib.Path(__file__).resolve().parent
+# Debian's packages that a build from nothing needs, by a header that each of them has (`start` lists the program's).
+headers = {
+    "libeigen3-dev": "eigen3/Eigen/Core",
+    "libsundials-dev": "cvode/cvode.h",
+    "libtbb-dev": "tbb/tbb.h",
+    "libtinyxml2-dev": "tinyxml2.h",
+    "libfmt-dev": "fmt/format.h",
+    "nlohmann-json3-dev": "nlohmann/json.hpp",
+    "libtoml11-dev": "toml.hpp",
+    "libcli11-dev": "CLI/CLI.hpp",
+    "libssl-dev": "openssl/evp.h",
+    "pybind11-dev": "pybind11/pybind11.h",
+}
 
 
 def found(file, pattern):
@@ -39,12 +53,38 @@ def require_packages():
         )
 
 
-def build_folder():
-    """The build folder, and the options to configure it with."""
+def folder_of_build():
     given = os.environ.get("FISHERHILL_BUILD")
     folder = pathlib.Path(given) if given else source / "build/program"
-    if not given and not (folder / "CMakeCache.txt").exists():
-        folder = source / "build/pip"
+    return folder if given or (folder / "CMakeCache.txt").exists() else source / "build/pip"
+
+
+def lacking():
+    """Debian's packages that are not there, of compiler, tools and headers."""
+    prefixes = [pathlib.Path(one) for one in (*os.environ.get("CMAKE_PREFIX_PATH", "").split(os.pathsep), sys.prefix, "/usr/local", "/usr") if one]
+    packages = []
+    if not (os.environ.get("CXX") or shutil.which("c++") or shutil.which("g++")):
+        packages.append("g++")
+    packages += [package for package, tool in (("cmake", "cmake"), ("ninja-build", "ninja")) if shutil.which(tool) is None]
+    packages += [package for package, header in headers.items() if not any((prefix / "include" / header).exists() for prefix in prefixes)]
+    if not (pathlib.Path(sysconfig.get_path("include")) / "Python.h").exists():
+        packages.append("python3-dev")
+    return packages
+
+
+def require_build_packages():
+    """A folder that has been configured has found what it needs."""
+    packages = [] if (folder_of_build() / "CMakeCache.txt").exists() else lacking()
+    if packages:
+        raise SystemExit(
+            "setup.py: to compile the module, what these Debian packages hold is missing: "
+            f"apt-get install --no-install-recommends {' '.join(packages)}"
+        )
+
+
+def build_folder():
+    """The build folder, and the options to configure it with."""
+    folder = folder_of_build()
     cache = folder / "CMakeCache.txt"
     configured = cache.read_text(encoding="utf-8") if cache.exists() else ""
     options = ["-DFISHERHILL_PYTHON=ON"]
@@ -76,6 +116,8 @@ class CMakeBuild(build_ext):
 
 
 require_packages()
+if not {"sdist", "egg_info"} & set(sys.argv):
+    require_build_packages()
 (source / "build").mkdir(exist_ok=True)
 setup(
     version=found("CMakeLists.txt", r"^project\(FisherHill VERSION ([0-9.]+) "),

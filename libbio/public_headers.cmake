@@ -13,6 +13,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/observation/least_squares_cost.h
   include/bio/observation/observed_motion.h
   include/bio/analysis/opensim_paths.h
+  include/bio/analysis/output_gradient.h
   include/bio/analysis/parameter_laws.h
   include/bio/analysis/path_postures.h
   include/bio/analysis/replay.h
@@ -58,6 +59,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/emg/channel_review.h
   include/bio/emg/emg.h
   include/bio/emg/emg_config.h
+  include/bio/emg/emg_config_draft.h
   include/bio/emg/emg_mapping.h
   include/bio/emg/emg_recordings.h
   include/bio/emg/emg_trial.h

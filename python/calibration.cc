@@ -86,8 +86,9 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
                      bool ownStart, const Pairs& latent,
                      const std::map<std::string, double>& initial, int starts, std::uint64_t seed,
                      int threads, const std::vector<std::string>& profile, int bootstrap,
-                     const Names& coordinate, const std::map<std::string, double>& lock,
-                     const std::string& integrator, std::optional<double> step) {
+                     const py::object& progress, const Names& coordinate,
+                     const std::map<std::string, double>& lock, const std::string& integrator,
+                     std::optional<double> step) {
   const SystemChoice choice = systemChoice(model, trials, coordinate, lock, integrator, step);
   for (const auto* set : {&trials, &holdOut})
     for (const bio::Trial& trial : *set) mustBeOfTheModelAsItIs(trial);
@@ -111,8 +112,8 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
   options.starts = starts;
   options.seed = seed;
   bio::SteppedCalibration stepped;
-  interruptible([&](const std::atomic<bool>& goOn) {
-    options.progress = [&](double) { return goOn.load(); };
+  interruptible({progress, "calibrate"}, [&](const auto& goOn, auto& done) {
+    options.progress = noting(goOn, done);
     stepped = bio::calibrateAtShorterSteps(
         model, choice.systemOptions(), declaring(trials, latent), holdOut, options,
         step ? std::numeric_limits<double>::infinity() : bio::shortestCalibrationStep);
@@ -150,13 +151,13 @@ py::object calibrate(const bio::Model& model, const std::vector<bio::Trial>& tri
 }  // namespace
 
 void defineCalibration(py::module_& module) {
-  defineWithChoice(module, "calibrate", &calibrate, docstrings::calibrate, "model"_a, "trials"_a,
-                   "parameters"_a, py::kw_only(), "hold_out"_a = std::vector<bio::Trial>(),
-                   "noise"_a = py::none(), "channel_noise"_a = std::map<std::string, double>(),
-                   "priors"_a = true, "prior"_a = Pairs(), "bounds"_a = Pairs(),
-                   "loss"_a = "gaussian", "own_start"_a = false, "latent"_a = Pairs(),
-                   "initial"_a = std::map<std::string, double>(), "starts"_a = 1, "seed"_a = 1,
-                   "threads"_a = 1, "profile"_a = std::vector<std::string>(), "bootstrap"_a = 0);
+  defineWithChoice(
+      module, "calibrate", &calibrate, docstrings::calibrate, "model"_a, "trials"_a, "parameters"_a,
+      py::kw_only(), "hold_out"_a = std::vector<bio::Trial>(), "noise"_a = py::none(),
+      "channel_noise"_a = std::map<std::string, double>(), "priors"_a = true, "prior"_a = Pairs(),
+      "bounds"_a = Pairs(), "loss"_a = "gaussian", "own_start"_a = false, "latent"_a = Pairs(),
+      "initial"_a = std::map<std::string, double>(), "starts"_a = 1, "seed"_a = 1, "threads"_a = 1,
+      "profile"_a = std::vector<std::string>(), "bootstrap"_a = 0, "progress"_a = false);
 }
 
 }  // namespace python

@@ -14,6 +14,7 @@
 #include "docstrings.h"
 #include "interruptible.h"
 #include "systems.h"
+#include "trials/trials.h"
 
 namespace python {
 namespace {
@@ -69,9 +70,9 @@ double periodOf(double rate) {
 }
 
 bio::DesignSearchSettings settingsOf(int candidates, int generations, int iterations,
-                                     std::uint64_t seed, int threads,
-                                     const std::atomic<bool>& goOn) {
-  return {candidates, generations, iterations, seed, threads, [&](double) { return goOn.load(); }};
+                                     std::uint64_t seed, int threads, const std::atomic<bool>& goOn,
+                                     std::atomic<double>& done) {
+  return {candidates, generations, iterations, seed, threads, noting(goOn, done)};
 }
 
 /// Course of a search; the first value is that of the trial itself.
@@ -193,9 +194,9 @@ py::object design(const bio::Model& model, const bio::Trial& trial,
                   double excitationRate, const Range& range, const OneOrNamed& speed,
                   double robustness, double knots, int candidates, int generations, int iterations,
                   int monteCarlo, std::uint64_t seed, int threads,
-                  const std::map<std::string, double>& initial, const Names& coordinate,
-                  const std::map<std::string, double>& lock, const std::string& integrator,
-                  std::optional<double> step) {
+                  const std::map<std::string, double>& initial, const py::object& progress,
+                  const Names& coordinate, const std::map<std::string, double>& lock,
+                  const std::string& integrator, std::optional<double> step) {
   const SystemChoice choice = systemChoice(model, {trial}, coordinate, lock, integrator, step);
   mustBeOfTheModelAsItIs(trial);
   if (monteCarlo < 0 || (monteCarlo > 0 && !nuisance.empty())) {
@@ -212,7 +213,7 @@ py::object design(const bio::Model& model, const bio::Trial& trial,
   std::optional<bio::ExperimentDesign> search;
   std::optional<info::MonteCarloResult> repeated;
   bio::DesignResult found;
-  interruptible([&](const std::atomic<bool>& goOn) {
+  interruptible({progress, "design"}, [&](const auto& goOn, auto& done) {
     system.emplace(model, choice.systemOptions());
     const Eigen::VectorXd start = bio::beginningOf(trial, model, *system, initial).point.q;
     catalogue.emplace(model, *system, bio::StartPoint{start, {}});
@@ -223,7 +224,8 @@ py::object design(const bio::Model& model, const bio::Trial& trial,
     search.emplace(*system, *catalogue, catalogue->nominal(), trial, simulation,
                    bio::designQuestion(*catalogue, {parameters, nuisance, priors, prior}, question),
                    limits, bio::muscleGroups(*system, start, excite), knots);
-    found = search->search(settingsOf(candidates, generations, iterations, seed, threads, goOn));
+    found =
+        search->search(settingsOf(candidates, generations, iterations, seed, threads, goOn, done));
     if (monteCarlo == 0 || found.stopped) return;
     info::MonteCarloOptions repetitions;
     repetitions.trials = monteCarlo;
@@ -286,9 +288,9 @@ py::object separate(const bio::Model& model, const bio::Trial& trial, const std:
                     const std::vector<std::string>& excite, double excitationMax,
                     double excitationRate, const Range& range, const OneOrNamed& speed,
                     double knots, int candidates, int generations, std::uint64_t seed, int threads,
-                    const std::map<std::string, double>& initial, const Names& coordinate,
-                    const std::map<std::string, double>& lock, const std::string& integrator,
-                    std::optional<double> step) {
+                    const std::map<std::string, double>& initial, const py::object& progress,
+                    const Names& coordinate, const std::map<std::string, double>& lock,
+                    const std::string& integrator, std::optional<double> step) {
   const SystemChoice choice = systemChoice(model, {trial}, coordinate, lock, integrator, step);
   const SearchInputs inputs{observe,       noise,          torque, torqueRate, excite,
                             excitationMax, excitationRate, range,  speed};
@@ -299,7 +301,7 @@ py::object separate(const bio::Model& model, const bio::Trial& trial, const std:
   question = bio::discover::withSizes(question, size);
   std::optional<bio::discover::SeparatingDesign> search;
   bio::discover::SeparatingResult found;
-  interruptible([&](const std::atomic<bool>& goOn) {
+  interruptible({progress, "separate"}, [&](const auto& goOn, auto& done) {
     const bio::MusculoskeletalSystem system(model, choice.systemOptions());
     const Eigen::VectorXd start = bio::startCoordinates(trial, system, initial);
     for (Eigen::Index i = 0; i < start.size(); ++i) {
@@ -310,7 +312,7 @@ py::object separate(const bio::Model& model, const bio::Trial& trial, const std:
     options.simulation = during(trial, choice.simulation());
     search.emplace(model, choice.systemOptions(), trial, options, question, inputs.limits(system),
                    bio::muscleGroups(system, system.skeleton().defaultValues(), excite), knots);
-    found = search->search(settingsOf(candidates, generations, 0, seed, threads, goOn));
+    found = search->search(settingsOf(candidates, generations, 0, seed, threads, goOn, done));
   });
   return separated(*search, found, model);
 }
@@ -320,22 +322,23 @@ py::object separate(const bio::Model& model, const bio::Trial& trial, const std:
 void defineDesign(py::module_& module) {
   using Given = std::map<std::string, double>;
   using List = std::vector<std::string>;
-  defineWithChoice(module, "design", &design, docstrings::design, "model"_a, "trial"_a,
-                   "parameters"_a, py::kw_only(), "nuisance"_a = List(), "priors"_a = false,
-                   "prior"_a = Given(), "criterion"_a = "E", "observe"_a = Given(),
-                   "noise"_a = 0.5 * bio::radiansPerDegree, "rate"_a = 100.0, "torque"_a = 10.0,
-                   "torque_rate"_a = 50.0, "excite"_a = List(), "excitation_max"_a = 0.5,
-                   "excitation_rate"_a = 2.0, "range"_a = py::none(),
-                   "speed"_a = 500 * bio::radiansPerDegree, "surprise"_a = 0.5, "knots"_a = 0.3,
-                   "candidates"_a = 100, "generations"_a = 100, "iterations"_a = 10,
-                   "monte_carlo"_a = 0, "seed"_a = 1, "threads"_a = 1, "initial"_a = Given());
+  defineWithChoice(
+      module, "design", &design, docstrings::design, "model"_a, "trial"_a, "parameters"_a,
+      py::kw_only(), "nuisance"_a = List(), "priors"_a = false, "prior"_a = Given(),
+      "criterion"_a = "E", "observe"_a = Given(), "noise"_a = 0.5 * bio::radiansPerDegree,
+      "rate"_a = 100.0, "torque"_a = 10.0, "torque_rate"_a = 50.0, "excite"_a = List(),
+      "excitation_max"_a = 0.5, "excitation_rate"_a = 2.0, "range"_a = py::none(),
+      "speed"_a = 500 * bio::radiansPerDegree, "surprise"_a = 0.5, "knots"_a = 0.3,
+      "candidates"_a = 100, "generations"_a = 100, "iterations"_a = 10, "monte_carlo"_a = 0,
+      "seed"_a = 1, "threads"_a = 1, "initial"_a = Given(), "progress"_a = false);
   defineWithChoice(module, "separate", &separate, docstrings::separate, "model"_a, "trial"_a,
                    "first"_a, "second"_a, py::kw_only(), "size"_a = Given(), "observe"_a = Given(),
                    "noise"_a = 0.5 * bio::radiansPerDegree, "rate"_a = 100.0, "torque"_a = 10.0,
                    "torque_rate"_a = 50.0, "excite"_a = List(), "excitation_max"_a = 0.5,
                    "excitation_rate"_a = 2.0, "range"_a = py::none(),
                    "speed"_a = 500 * bio::radiansPerDegree, "knots"_a = 0.3, "candidates"_a = 100,
-                   "generations"_a = 100, "seed"_a = 1, "threads"_a = 1, "initial"_a = Given());
+                   "generations"_a = 100, "seed"_a = 1, "threads"_a = 1, "initial"_a = Given(),
+                   "progress"_a = false);
 }
 
 }  // namespace python

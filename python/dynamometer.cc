@@ -10,6 +10,7 @@
 #include "docstrings.h"
 #include "interruptible.h"
 #include "systems.h"
+#include "trials/trials.h"
 
 namespace python {
 namespace {

@@ -5,6 +5,7 @@
 #include "arguments/columns.h"
 #include "arguments/file_name.h"
 #include "bio/emg/emg_config.h"
+#include "bio/emg/emg_config_draft.h"
 #include "bio/emg/emg_recordings.h"
 #include "bio/emg/emg_trial.h"
 #include "bio/tables/recorded_file.h"
@@ -27,8 +28,10 @@ py::dict electrodesOf(const bio::EmgResult& result) {
   return electrodes;
 }
 
-py::object emg(const std::variant<FileName, std::vector<FileName>>& recordings,
-               const FileName& config, const FileName& write) {
+/// A file or several.
+using Files = std::variant<FileName, std::vector<FileName>>;
+
+std::vector<std::string> filesOf(const Files& recordings) {
   std::vector<std::string> files;
   if (const auto* one = std::get_if<FileName>(&recordings)) {
     files.push_back(one->text);
@@ -36,6 +39,22 @@ py::object emg(const std::variant<FileName, std::vector<FileName>>& recordings,
     for (const FileName& each : std::get<1>(recordings)) files.push_back(each.text);
   }
   if (files.empty()) throw std::invalid_argument("recordings: empty, must have at least one");
+  return files;
+}
+
+py::object writeEmgConfig(const Files& recordings, const FileName& file) {
+  const std::vector<std::string> files = filesOf(recordings);
+  bio::EmgConfigDraft draft;
+  interruptible([&](const std::atomic<bool>&) {
+    draft = bio::draftEmgConfig(files);
+    bio::writeNewFile(draft.text, file.text);
+  });
+  return results("channels"_a = draft.channels, "electrodes"_a = draft.electrodes,
+                 "is_complete"_a = draft.complete);
+}
+
+py::object emg(const Files& recordings, const FileName& config, const FileName& write) {
+  const std::vector<std::string> files = filesOf(recordings);
   bio::JoinedRecordings joined;
   bio::EmgResult result;
   bio::Table trial;
@@ -78,7 +97,7 @@ py::object readRecording(const FileName& file) {
   return results("markers"_a = markers, "times"_a = times,
                  "frame_rate"_a = recorded.markers ? recorded.markers->rate
                                                    : std::numeric_limits<double>::quiet_NaN(),
-                 "channels"_a = channels, "remarks"_a = recorded.remarks);
+                 "channels"_a = tableOfRows(channels), "remarks"_a = recorded.remarks);
 }
 
 }  // namespace
@@ -86,6 +105,8 @@ py::object readRecording(const FileName& file) {
 void defineEmg(py::module_& module) {
   module.def("emg", &emg, "recordings"_a, "config"_a, py::kw_only(), "write"_a = "",
              docstrings::emg);
+  module.def("write_emg_config", &writeEmgConfig, "recordings"_a, "file"_a,
+             docstrings::write_emg_config);
   module.def("read_recording", &readRecording, "file"_a, docstrings::read_recording);
 }
 

@@ -32,12 +32,13 @@ struct EnsembleRows {
 };
 
 EnsembleRows rowsOf(const bio::TrialEnsemble& ensemble, int first, std::uint64_t seed, int threads,
-                    const std::atomic<bool>& goOn) {
+                    const std::atomic<bool>& goOn, std::atomic<double>& done) {
   constexpr int together = 32;
   const auto count = static_cast<int>(ensemble.count());
   EnsembleRows rows;
   rows.parameters.resize(count, std::ssize(ensemble.laws().parameters));
   rows.runs.resize(static_cast<std::size_t>(count));
+  std::atomic<int> finished = 0;
   info::parallelFor((count + together - 1) / together, threads, [&](int part) {
     if (!goOn) return;
     std::vector<Eigen::VectorXd> thetas;
@@ -49,6 +50,7 @@ EnsembleRows rowsOf(const bio::TrialEnsemble& ensemble, int first, std::uint64_t
     }
     std::vector<bio::EnsembleRun> runs = ensemble.run(thetas);
     std::move(runs.begin(), runs.end(), rows.runs.begin() + begin);
+    done = static_cast<double>(finished += static_cast<int>(runs.size())) / count;
   });
   return rows;
 }
@@ -162,8 +164,9 @@ py::object ensemble(const bio::Model& model, const bio::Trial& trial,
                     const std::optional<Covariance>& covariance, bool sobol,
                     const std::string& output, const std::vector<std::string>& observe,
                     int bandPoints, int threads, const std::map<std::string, double>& initial,
-                    const Names& coordinate, const std::map<std::string, double>& lock,
-                    const std::string& integrator, std::optional<double> step) {
+                    const py::object& progress, const Names& coordinate,
+                    const std::map<std::string, double>& lock, const std::string& integrator,
+                    std::optional<double> step) {
   const SystemChoice choice = systemChoice(model, {trial}, coordinate, lock, integrator, step);
   if (first < 0 || (first > 0 && sobol)) {
     throw std::invalid_argument(fmt::format(
@@ -188,12 +191,12 @@ py::object ensemble(const bio::Model& model, const bio::Trial& trial,
   std::unique_ptr<const bio::TrialEnsemble> made;
   EnsembleRows rows;
   std::vector<bio::SobolFinding> indices;
-  interruptible([&](const std::atomic<bool>& goOn) {
+  interruptible({progress, "ensemble"}, [&](const auto& goOn, auto& done) {
     const bio::MusculoskeletalSystem system(model, choice.systemOptions());
     made = std::make_unique<const bio::TrialEnsemble>(
         model, system, choice.systemOptions(), trial,
         bio::beginningOf(trial, model, system, initial).point, options);
-    rows = rowsOf(*made, first, seed, threads, goOn);
+    rows = rowsOf(*made, first, seed, threads, goOn, done);
     if (!sobol || !goOn) return;
     const bio::EnsembleOutput& decomposed =
         bio::ensembleOutputs()[bio::ensembleOutputNamed(output)];
@@ -214,7 +217,7 @@ void defineEnsemble(py::module_& module) {
                    "prior"_a = Pairs(), "bounds"_a = Pairs(), "covariance"_a = py::none(),
                    "sobol"_a = false, "output"_a = "final",
                    "observe"_a = std::vector<std::string>(), "band_points"_a = 46, "threads"_a = 1,
-                   "initial"_a = std::map<std::string, double>());
+                   "initial"_a = std::map<std::string, double>(), "progress"_a = false);
 }
 
 }  // namespace python

@@ -4,11 +4,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "systems.h"
 #include "bio/tables/file_error.h"
 #include "info/version.h"
 #include "python_system.h"
 #include "robots/robots.h"
+#include "systems.h"
 
 namespace python {
 namespace {
@@ -58,6 +58,7 @@ PYBIND11_MODULE(_fisherhill, module) {
   python::defineEmg(module);
   python::definePaths(module);
   python::defineSensitivity(module);
+  python::definePrediction(module);
   python::defineComparisons(module);
   python::defineEnsemble(module);
   python::defineCalibration(module);

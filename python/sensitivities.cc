@@ -1,40 +1,19 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <memory>
 #include <variant>
 
 #include "bio/analysis/replay.h"
-#include "bio/analysis/sensitivity_study.h"
 #include "bio/calibration/trial_set.h"
 #include "bio/model/units.h"
 #include "bio/simulation/integrator_names.h"
 #include "bio/tables/different_trials.h"
 #include "docstrings.h"
 #include "interruptible.h"
+#include "prediction/studies.h"
 #include "systems.h"
 
 namespace python {
-namespace {
-
-/// The system and the trials with which the functions below begin.
-struct Studies {
-  SystemChoice choice;
-  std::unique_ptr<bio::MusculoskeletalSystem> system = {};
-  std::vector<bio::StudiedTrial> trials = {};
-  bio::SensitivityQuestion question = {};
-
-  const bio::ParameterCatalogue& catalogue() const { return trials.front().catalogue; }
-};
-
-/// The four arguments that choose a system, as defineWithChoice() has them, and the start.
-struct Choosing {
-  std::map<std::string, double> initial;
-  Names coordinate;
-  std::map<std::string, double> lock;
-  std::string integrator;
-  std::optional<double> step;
-};
 
 Studies begun(const bio::Model& model, const std::vector<bio::Trial>& trials,
               const Choosing& chosen) {
@@ -46,7 +25,6 @@ Studies begun(const bio::Model& model, const std::vector<bio::Trial>& trials,
   return studies;
 }
 
-/// Systems are made here: within interruptible().
 void prepare(Studies& studies, const bio::Model& model, const std::vector<bio::Trial>& trials,
              const Choosing& chosen, const std::atomic<bool>& goOn) {
   const SystemChoice& choice = studies.choice;
@@ -67,6 +45,8 @@ void mustHaveFreeCoordinate(const Studies& studies, const char* otherwise) {
   throw std::invalid_argument(
       fmt::format("no coordinate is free to be observed: all are prescribed{}", otherwise));
 }
+
+namespace {
 
 py::list gainsOf(const std::vector<bio::ChannelGain>& gains, const bio::Model& model) {
   py::list list;
@@ -212,7 +192,8 @@ py::object profileLikelihood(const bio::Model& model, const std::vector<bio::Tri
 py::object globalSensitivity(const bio::Model& model, const std::vector<bio::Trial>& trials,
                              const std::vector<std::string>& parameters, const std::string& method,
                              int samples, std::uint64_t seed, int threads,
-                             const std::map<std::string, double>& initial, const Names& coordinate,
+                             const std::map<std::string, double>& initial,
+                             const py::object& progress, const Names& coordinate,
                              const std::map<std::string, double>& lock,
                              const std::string& integrator, std::optional<double> step) {
   if (method != "morris" && method != "sobol" && method != "both") {
@@ -227,13 +208,15 @@ py::object globalSensitivity(const bio::Model& model, const std::vector<bio::Tri
   global.ensemble.threads = threads;
   std::vector<std::string> names;
   bio::GlobalFinding found;
-  interruptible([&](const std::atomic<bool>& goOn) {
+  interruptible({progress, "global_sensitivity"}, [&](const auto& goOn, auto& done) {
     prepare(studies, model, trials, chosen, goOn);
     studies.question.selection = studies.catalogue().select(parameters);
     for (const std::size_t index : studies.question.selection) {
       names.push_back(studies.catalogue().parameters()[index].name);
     }
-    global.ensemble.progress = [&](int, int) { return goOn.load(); };
+    global.ensemble.progress = [&](int finished, int runs) {
+      return noting(goOn, done)(static_cast<double>(finished) / runs);
+    };
     found = bio::globalSensitivity(studies.trials, studies.question, global);
   });
   py::object morris = py::none(), sobol = py::none();
@@ -286,12 +269,13 @@ py::object costGradient(const bio::Model& model, const std::vector<bio::Trial>& 
   options.simulation = choice.simulation();
   options.simulation.duration = 1;
   options.threads = threads;
-  std::vector<std::string> names, units;
+  std::vector<std::string> names, units, muscles;
   Eigen::VectorXd at, atModel, priorSds;
   bio::TrialSet::Cost cost;
   interruptible([&](const std::atomic<bool>&) {
     const bio::TrialSet set(model, choice.systemOptions(), trials, options);
     priorSds = set.priorSds();
+    muscles = bio::muscleNames(set.system());
     atModel.resize(priorSds.size());
     for (const info::Parameter& parameter : set.parameters()) {
       atModel[std::ssize(names)] = parameter.start;
@@ -312,7 +296,7 @@ py::object costGradient(const bio::Model& model, const std::vector<bio::Trial>& 
   }
   return tableResult("CostGradientResult", "names"_a = names, "units"_a = units, "values"_a = at,
                      "cost"_a = cost.value, "gradient"_a = cost.gradient,
-                     "excitation_gradient"_a = excitations);
+                     "excitation_gradient"_a = excitations, "muscles"_a = muscles);
 }
 
 py::object listParameters(const bio::Model& model, const Names& coordinate,
@@ -349,7 +333,7 @@ void defineSensitivity(py::module_& module) {
   defineWithChoice(module, "global_sensitivity", &globalSensitivity, docstrings::global_sensitivity,
                    "model"_a, "trials"_a, "parameters"_a, py::kw_only(), "method"_a = "both",
                    "samples"_a = 64, "seed"_a = 1, "threads"_a = 1,
-                   "initial"_a = std::map<std::string, double>());
+                   "initial"_a = std::map<std::string, double>(), "progress"_a = false);
   defineWithChoice(module, "cost_gradient", &costGradient, docstrings::cost_gradient, "model"_a,
                    "trials"_a, "parameters"_a, "values"_a = py::none(), py::kw_only(),
                    "noise"_a = Noise(bio::radiansPerDegree), "priors"_a = false,

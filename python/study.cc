@@ -57,7 +57,8 @@ std::map<std::string, double> heldIn(const bio::Model& model, const std::vector<
 void defineStudies(py::module_& module) {
   module.def("read_study", &readStudy, "file"_a, docstrings::read_study);
   module.def("_held", &heldIn, "model"_a, "trials"_a, "coordinates"_a, "lock"_a);
-  module.attr("_study_docstring") = docstrings::study;  // of _study.py
+  module.attr("_study_docstring") = docstrings::study;      // of _study.py
+  module.attr("_explore_docstring") = docstrings::explore;  // of _explore.py
 }
 
 }  // namespace python

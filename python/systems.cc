@@ -4,7 +4,6 @@
 
 #include <stdexcept>
 
-#include "arguments/columns.h"
 #include "arguments/file_name.h"
 #include "bio/analysis/replay.h"
 #include "bio/analysis/step_effect.h"
@@ -17,45 +16,12 @@
 #include "bio/simulation/integrator_names.h"
 #include "bio/skeleton/articulated_tree.h"
 #include "bio/skeleton/free_coordinates.h"
-#include "bio/tables/trial_table.h"
 #include "docstrings.h"
 #include "interruptible.h"
+#include "trials/trials.h"
 
 namespace python {
 namespace {
-
-bio::Trial trialOfColumns(const bio::Model& model, const py::object& columns,
-                          const std::string& name, bool ignoreExtra, double knownMassInHand,
-                          double knownArmTurn, const std::vector<std::string>& prescribe,
-                          const std::map<std::string, double>& hold,
-                          std::optional<double> prescribeCutoff,
-                          const std::string& latentExcitation) {
-  bio::Table table = tableOf(columns, name);
-  table.metadata = bio::headerOf({knownMassInHand, knownArmTurn});
-  if (!latentExcitation.empty()) table.metadata["latent_excitation"] = latentExcitation;
-  bio::Trial trial = trialOf(table, name, model,
-                             {.ignoreExtra = ignoreExtra,
-                              .experimentalConditions = true,
-                              .prescribed = prescribe,
-                              .held = hold});
-  if (prescribeCutoff) bio::smoothPrescribed(trial, *prescribeCutoff);
-  return trial;
-}
-
-bio::Trial loadTrial(const FileName& file, const bio::Model& model, bool ignoreExtra,
-                     const std::vector<std::string>& prescribe,
-                     const std::map<std::string, double>& hold,
-                     std::optional<double> prescribeCutoff) {
-  bio::Trial trial = bio::readTrial(file.text, model,
-                                    {.ignoreExtra = ignoreExtra,
-                                     .experimentalConditions = true,
-                                     .prescribed = prescribe,
-                                     .held = hold});
-  trial.sha256 =
-      digestOf(py::module_::import("pathlib").attr("Path")(file.text).attr("read_bytes")());
-  if (prescribeCutoff) bio::smoothPrescribed(trial, *prescribeCutoff);
-  return trial;
-}
 
 /// Copies: a model that others hold stays as it is.
 bio::Model withMuscles(bio::Model model, const std::string& className) {
@@ -106,24 +72,6 @@ bio::Model withParameters(const bio::Model& model, const py::object& values,
   bio::ModelWithParameters changed = bio::withParameters(model, options, asked);
   bio::requireOfModel(changed);
   return std::move(changed.model);
-}
-
-py::dict coursesOf(const std::vector<bio::MeasuredChannel>& motions) {
-  py::dict courses;
-  for (const bio::MeasuredChannel& channel : motions) {
-    if (!channel.what.isCoordinate()) continue;
-    courses[channel.what.object.c_str()] = py::make_tuple(channel.times, channel.values);
-  }
-  return courses;
-}
-
-py::dict channelsOf(const bio::Trial& trial) {
-  py::dict channels;
-  for (const bio::MeasuredChannel& channel : trial.measured) {
-    if (channel.what.isCoordinate()) continue;
-    channels[bio::nameOf(channel.what).c_str()] = py::make_tuple(channel.times, channel.values);
-  }
-  return channels;
 }
 
 std::vector<std::string> coordinatesOf(const bio::Model& model) {
@@ -281,24 +229,6 @@ SystemChoice systemChoice(const bio::Model& model, const std::vector<bio::Trial>
           .step = step};
 }
 
-bio::Trial trialOf(const bio::Table& table, const std::string& name, const bio::Model& model,
-                   const bio::TrialOptions& options) {
-  bio::Trial trial = bio::trialFrom(table, name, model, options);
-  trial.sha256 = digestOf(
-      py::repr(py::make_tuple(
-                   name, py::bytes(reinterpret_cast<const char*>(table.values.data()),
-                                   sizeof(double) * static_cast<std::size_t>(table.values.size()))))
-          .attr("encode")());
-  return trial;
-}
-
-std::string digestOf(const py::object& bytes) {
-  return py::module_::import("hashlib")
-      .attr("sha256")(bytes)
-      .attr("hexdigest")()
-      .cast<std::string>();
-}
-
 void mustBeOfTheModelAsItIs(const bio::Trial& trial) {
   if (!trial.conditions.any()) return;
   throw std::invalid_argument(
@@ -338,40 +268,10 @@ void defineSystems(py::module_& module) {
         return fmt::format("<fisherhill.Model '{}', {} muscles>", self.name,
                            musclesOf(self).size());
       });
-  py::class_<bio::Trial> trial(module, "Trial", docstrings::Trial);
-  trial.attr("__module__") = packageName;
-  trial.def_readonly("name", &bio::Trial::file, docstrings::Trial_name)
-      .def_readonly("times", &bio::Trial::times, docstrings::Trial_times)
-      .def_readonly("muscles", &bio::Trial::muscles, docstrings::Trial_muscles)
-      .def_readonly("excitations", &bio::Trial::excitations, docstrings::Trial_excitations)
-      .def_property_readonly(
-          "measured", [](const bio::Trial& self) { return coursesOf(self.measured); },
-          docstrings::Trial_measured)
-      .def_property_readonly(
-          "prescribed", [](const bio::Trial& self) { return coursesOf(self.prescribed); },
-          docstrings::Trial_prescribed)
-      .def_property_readonly("channels", &channelsOf, docstrings::Trial_channels)
-      .def_property_readonly(
-          "known_mass_in_hand", [](const bio::Trial& self) { return self.conditions.massInHand; },
-          docstrings::Trial_known_mass_in_hand)
-      .def_property_readonly(
-          "known_arm_turn", [](const bio::Trial& self) { return self.conditions.armTurn; },
-          docstrings::Trial_known_arm_turn)
-      .def_readonly("warnings", &bio::Trial::warnings, docstrings::Trial_warnings)
-      .def("__repr__", [](const bio::Trial& self) {
-        return fmt::format("<fisherhill.Trial '{}', {} rows>", self.file, self.times.size());
-      });
   module.def(
       "load_model", [](const FileName& file) { return bio::readOsim(file.text); }, "file"_a,
       docstrings::load_model);
-  module.def("load_trial", &loadTrial, "file"_a, "model"_a, py::kw_only(), "ignore_extra"_a = false,
-             "prescribe"_a = std::vector<std::string>(), "hold"_a = std::map<std::string, double>(),
-             "prescribe_cutoff"_a = py::none(), docstrings::load_trial);
-  module.def("make_trial", &trialOfColumns, "model"_a, "columns"_a, py::kw_only(),
-             "name"_a = "trial", "ignore_extra"_a = false, "known_mass_in_hand"_a = 0.0,
-             "known_arm_turn"_a = 0.0, "prescribe"_a = std::vector<std::string>(),
-             "hold"_a = std::map<std::string, double>(), "prescribe_cutoff"_a = py::none(),
-             "latent_excitation"_a = "", docstrings::make_trial);
+  py::class_<bio::Trial> trial = defineTrials(module);
   defineReviews(module, model, trial);
   defineWithChoice(module, "replay", &replay, docstrings::replay, "model"_a, "trial"_a,
                    py::kw_only(), "initial"_a = std::map<std::string, double>(),

@@ -9,7 +9,6 @@
 #include "bio/model/model.h"
 #include "bio/simulation/musculoskeletal_system.h"
 #include "bio/simulation/simulate.h"
-#include "bio/tables/table_file.h"
 #include "bio/tables/trial.h"
 #include "namespace.h"
 
@@ -50,13 +49,6 @@ void defineWithChoice(py::module_& module, const char* name, Function function,
              "step"_a = py::none());
 }
 
-/// SHA-256 of a bytes object, by which models know trials that they were fitted to.
-std::string digestOf(const py::object& bytes);
-
-/// bio::trialFrom, known by its numbers as trials of files are by theirs.
-bio::Trial trialOf(const bio::Table& table, const std::string& name, const bio::Model& model,
-                   const bio::TrialOptions& options);
-
 /// For what simulates the model as it is.
 /// @throws std::invalid_argument for a trial that was recorded with something changed on purpose
 void mustBeOfTheModelAsItIs(const bio::Trial& trial);
@@ -73,6 +65,7 @@ void definePaths(py::module_& module);
 void defineComparisons(py::module_& module);
 void defineEnsemble(py::module_& module);
 void defineSensitivity(py::module_& module);
+void definePrediction(py::module_& module);
 void defineCalibration(py::module_& module);
 void defineDiscovery(py::module_& module);
 void defineStudies(py::module_& module);

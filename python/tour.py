@@ -53,8 +53,8 @@ assert plan.bound_after[0] < plan.bound_before[0]
 # %%
 fast = fh.load_trial("emg_data/curl_fast.sto", model)
 fit = fh.calibrate(model, [trial], ["TRI.radius", "hand.mass"], hold_out=[fast])
-for name, one in fit.estimates.items():
-    print(f"{name:12} {one.model:.4g} -> {one.value:.4g} ± {one.sd:.2g} {one.unit}")
+for name, fitted in fit.estimates.items():
+    print(f"{name:12} {fitted.model:.4g} -> {fitted.value:.4g} ± {fitted.sd:.2g} {fitted.unit}")
 print(f"fitted trial {fit.rmse_before * degrees:.1f} -> {fit.rmse_after * degrees:.1f} deg,",
       f"held out {fit.rmse_held_out_before * degrees:.1f} -> {fit.rmse_held_out * degrees:.1f} deg")
 assert fit.rmse_after < fit.rmse_before

@@ -5,11 +5,13 @@
 
 #include "bio/emg/emg.h"
 #include "bio/emg/emg_config.h"
+#include "bio/emg/emg_config_draft.h"
 #include "bio/emg/emg_recordings.h"
 #include "bio/emg/emg_trial.h"
 #include "bio/tables/recording.h"
 #include "bio/tables/table_file.h"
 #include "command/command.h"
+#include "output/json_text.h"
 #include "report/result.h"
 
 namespace app {
@@ -107,13 +109,23 @@ class Emg : public Command {
         ->type_name("");
     options
         .add_option("--config", config_,
-                    "configuration: channels, filters, electrodes (docs/emg.md)")
-        ->required()
+                    "configuration: channels, filters, electrodes (docs/emg.md); required unless "
+                    "--write-config is given")
         ->check(CLI::ExistingFile)
         ->type_name("C.toml");
+    options
+        .add_option("--write-config", draft_,
+                    "write a configuration to begin with, which lists the channels of RAW, and "
+                    "exit; an existing file is not overwritten")
+        ->type_name("FILE");
   }
 
   ExitStatus run(const CommandContext& context) override {
+    if (!draft_.empty()) return writeDraft(context);
+    if (config_.empty()) {
+      throw std::invalid_argument(
+          "--config is required; --write-config FILE writes one to begin with");
+    }
     OutputFolder folder(context, {"excitations.sto"});
     Summary summary(context);
     for (const std::string& recording : recordings_) summary.addInput(recording);
@@ -142,6 +154,31 @@ class Emg : public Command {
   }
 
  private:
+  ExitStatus writeDraft(const CommandContext& context) const {
+    if (!config_.empty()) {
+      throw std::invalid_argument("--write-config: --config is given, must be left out");
+    }
+    if (context.out || context.figures) {
+      throw std::invalid_argument(
+          "--write-config: writes this one file, --out and --figures must be left out");
+    }
+    const bio::EmgConfigDraft draft = bio::draftEmgConfig(recordings_);
+    bio::writeNewFile(draft.text, draft_);
+    if (context.json) {
+      const nlohmann::ordered_json found = {{"config", draft_},
+                                            {"channels", draft.channels},
+                                            {"electrodes", draft.electrodes},
+                                            {"is_complete", draft.complete}};
+      fmt::print("{}\n", jsonText(found, 2));
+      return ExitStatus::done;
+    }
+    fmt::print("{}: {} channel{}, {} electrode{}. {}\n", draft_, draft.channels,
+               draft.channels == 1 ? "" : "s", draft.electrodes, draft.electrodes == 1 ? "" : "s",
+               draft.complete ? "Muscles are called as their channels: write those of your model."
+                              : "Fill in what its comments call needed.");
+    return ExitStatus::done;
+  }
+
   void tell(const bio::JoinedRecordings& joined, const bio::EmgResult& result,
             Summary& summary) const {
     summary.set("format", std::string(bio::nameOf(joined.recording.format)));
@@ -221,6 +258,7 @@ class Emg : public Command {
 
   std::vector<std::string> recordings_;
   std::string config_;
+  std::string draft_;  ///< file to write instead; empty: none
 };
 
 }  // namespace

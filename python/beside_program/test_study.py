@@ -69,7 +69,8 @@ class Study(AsTheProgram):
 
     def test_the_example_of_the_documentation_computes_what_is_left(self):
         with open("docs/python.md", encoding="utf-8") as file:
-            example = file.read().split("```python\n")[1].split("```")[0]
+            blocks = [text.split("```")[0] for text in file.read().split("```python\n")[1:]]
+        (example,) = [block for block in blocks if "study.toml" in block]
         for k in range(2):
             self.trial(f"t{k}.csv", slice(20 * k, 20 * k + 51))
         file = self.study({f"s{k}": f"t{k}.csv" for k in range(2)})

@@ -13,6 +13,7 @@
 #include "robots/robot_recording.h"
 #include "robots/robots.h"
 #include "systems.h"
+#include "trials/trials.h"
 
 namespace python {
 namespace {
@@ -96,7 +97,7 @@ py::object discoverRobot(const std::string& system, std::vector<RobotTrial> tria
                          const std::optional<std::variant<double, std::vector<double>>>& noise,
                          const std::vector<std::string>& without, int maxEffects,
                          std::optional<double> step, std::optional<double> inputScatter,
-                         bool ignoreExtra) {
+                         bool ignoreExtra, const py::object& progress) {
   const std::vector<info::robot::Channel> channels = info::robot::channelsOf(system);
   if (trials.empty()) throw std::invalid_argument("trials: empty, must hold at least one");
   trials.insert(trials.end(), holdOut.begin(), holdOut.end());
@@ -119,8 +120,11 @@ py::object discoverRobot(const std::string& system, std::vector<RobotTrial> tria
                             : std::get<std::vector<double>>(*noise);
   asked.search = searchOptions(maxEffects, inputScatter);
   info::robot::DiscoveryResult result;
-  interruptible([&](const std::atomic<bool>& goOn) {
+  interruptible({progress, "discover_robot"}, [&](const auto& goOn, auto& done) {
     asked.search.goOn = [&] { return goOn.load(); };
+    asked.search.progress = [&](const info::discover::Progress& at) {
+      return noting(goOn, done)(at.fraction);
+    };
     result = info::robot::discover(asked);
   });
   const info::robot::RobotProblem& data = *result.data;
@@ -142,7 +146,7 @@ void defineRobotDiscovery(py::module_& module) {
              "hold_out"_a = std::vector<RobotTrial>(), "with_effects"_a = py::none(),
              "noise"_a = py::none(), "without"_a = std::vector<std::string>(), "max_effects"_a = 3,
              "step"_a = py::none(), "input_scatter"_a = py::none(), "ignore_extra"_a = false,
-             docstrings::discover_robot);
+             "progress"_a = false, docstrings::discover_robot);
 }
 
 }  // namespace python

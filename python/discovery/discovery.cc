@@ -17,6 +17,7 @@
 #include "info/version.h"
 #include "interruptible.h"
 #include "systems.h"
+#include "trials/trials.h"
 
 namespace python {
 namespace {
@@ -170,9 +171,9 @@ py::object listEffects(const bio::Model& model, const Names& coordinate,
 py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                     const std::vector<bio::Trial>& holdOut, const std::optional<GivenNoise>& noise,
                     const std::vector<std::string>& without, const OwnEffects& own, int maxEffects,
-                    std::optional<double> inputScatter, const Names& coordinate,
-                    const std::map<std::string, double>& lock, const std::string& integrator,
-                    std::optional<double> firstStep) {
+                    std::optional<double> inputScatter, const py::object& progress,
+                    const Names& coordinate, const std::map<std::string, double>& lock,
+                    const std::string& integrator, std::optional<double> firstStep) {
   const SystemChoice choice = systemChoice(model, trials, coordinate, lock, integrator, firstStep);
   bio::requireDifferentTrials(trials, holdOut);
   trials.insert(trials.end(), holdOut.begin(), holdOut.end());
@@ -199,8 +200,11 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
   for (const bio::Trial& trial : asked.trials)
     asked.provenance.data.push_back(fmt::format("{} SHA-256 {}", trial.file, trial.sha256));
   bio::discover::DiscoveryResult result;
-  interruptible([&](const std::atomic<bool>& goOn) {
+  interruptible({progress, "discover"}, [&](const auto& goOn, auto& done) {
     asked.search.goOn = [&] { return goOn.load(); };
+    asked.search.progress = [&](const info::discover::Progress& at) {
+      return noting(goOn, done)(at.fraction);
+    };
     result = bio::discover::discover(asked);
   });
   const MusculoskeletalProblem& data = *result.data;
@@ -231,7 +235,7 @@ void defineDiscovery(py::module_& module) {
   defineWithChoice(module, "discover", &discover, docstrings::discover, "model"_a, "trials"_a,
                    py::kw_only(), "hold_out"_a = std::vector<bio::Trial>(), "noise"_a = py::none(),
                    "without"_a = std::vector<std::string>(), "effects"_a = std::vector<FileName>(),
-                   "max_effects"_a = 3, "input_scatter"_a = py::none());
+                   "max_effects"_a = 3, "input_scatter"_a = py::none(), "progress"_a = false);
 }
 
 }  // namespace python

@@ -1,7 +1,13 @@
-"""The examples of the docstrings say what comes out."""
+"""The examples of the docstrings say what comes out, and those of docs/python.md run."""
 
 import ast
+import contextlib
 import doctest
+import importlib.util
+import io
+import os
+import pathlib
+import re
 import unittest
 
 import numpy as np
@@ -9,6 +15,8 @@ import numpy as np
 import fisherhill as fh
 
 import stub
+
+os.environ["MPLBACKEND"] = "agg"
 
 
 def documented():
@@ -45,6 +53,24 @@ class Examples(unittest.TestCase):
         said, count = failures("wrong", ">>> 1 + 1\n3\n")
         self.assertEqual(count, 1)
         self.assertIn("Expected", said)
+
+
+class Document(unittest.TestCase):
+    def test_its_examples_run(self):
+        """All but the study, which beside_program/test_study.py runs, with the model and the trial that they take for granted."""
+        model = fh.load_model("models/elbow8.osim")
+        known = {"fisherhill": fh, "np": np, "model": model, "trial": fh.load_trial("emg_data/curl_slow.sto", model)}
+        blocks = re.findall(r"^```python\n(.*?)^```", pathlib.Path("docs/python.md").read_text(encoding="utf-8"), re.M | re.S)
+        uses = {"torch": "torch", "pandas": "to_dataframe", "matplotlib": "plot()"}
+        run = 0
+        for block in blocks:
+            needed = [name for name, use in uses.items() if name in block or use in block]
+            if "study.toml" in block or any(importlib.util.find_spec(name) is None for name in needed):
+                continue
+            with self.subTest(block), contextlib.redirect_stdout(io.StringIO()):
+                exec(compile(block, "docs/python.md", "exec"), dict(known))
+                run += 1
+        self.assertGreater(run, 0)
 
 
 if __name__ == "__main__":

@@ -114,8 +114,10 @@ class Discovery(RobotsBesideProgram):
         self.assertEqual(found.noise, {"force": NOISE})
         self.assertEqual(found.fits, summary["fits"])
         # the same numbers in columns
-        again = fh.discover_robot("suspended-mass", self.trials[:1], hold_out=self.trials[1:], **given)
+        told = []
+        again = fh.discover_robot("suspended-mass", self.trials[:1], hold_out=self.trials[1:], progress=told.append, **given)
         self.assertEqual(again.effects, found.effects)
+        self.assertEqual((told, told[-1]), (sorted(told), 1))
 
         # nothing more is missing with the effect, which comes from a file or from the result
         file = str(out / "with_effect.json")

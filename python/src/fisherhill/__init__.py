@@ -34,6 +34,7 @@ from ._fisherhill import (
     opensim_differences,
     optimise_robot_motion,
     parameter_sweep,
+    predict,
     profile_likelihood,
     read_recording,
     read_study,
@@ -41,7 +42,9 @@ from ._fisherhill import (
     robot_information,
     sensitivity,
     separate,
+    write_emg_config,
 )
+from ._explore import explore
 from ._study import study
 
 __all__ = [
@@ -62,6 +65,7 @@ __all__ = [
     "ensemble",
     "estimate",
     "estimate_string_length",
+    "explore",
     "fisher_information",
     "fit_paths",
     "global_sensitivity",
@@ -77,6 +81,7 @@ __all__ = [
     "opensim_differences",
     "optimise_robot_motion",
     "parameter_sweep",
+    "predict",
     "profile_likelihood",
     "read_recording",
     "read_study",
@@ -85,4 +90,5 @@ __all__ = [
     "sensitivity",
     "separate",
     "study",
+    "write_emg_config",
 ]

@@ -42,6 +42,7 @@ __all__ = [
     "ensemble",
     "estimate",
     "estimate_string_length",
+    "explore",
     "fisher_information",
     "fit_paths",
     "global_sensitivity",
@@ -57,6 +58,7 @@ __all__ = [
     "opensim_differences",
     "optimise_robot_motion",
     "parameter_sweep",
+    "predict",
     "profile_likelihood",
     "read_recording",
     "read_study",
@@ -65,6 +67,7 @@ __all__ = [
     "sensitivity",
     "separate",
     "study",
+    "write_emg_config",
 ]
 
 __version__: str
@@ -79,6 +82,7 @@ class _DataFrame(Protocol):  # of pandas, and what is like it
     to_numpy: Any
 
 _Columns: TypeAlias = Mapping[str, ArrayLike] | _DataFrame
+_Progress: TypeAlias = bool | Callable[[float], object]
 
 # Tables -------------------------------------------------------------------------------------------
 
@@ -333,6 +337,50 @@ class Trial:
     def warnings(self) -> list[str]:
         """Remarks on the columns, one line each."""
 
+    def columns(self, model: Model) -> dict[str, _Array]:
+        """The trial as columns by name, as make_trial takes them.
+
+        Parameters
+        ----------
+        model : Model
+            The one that the trial was read for.
+
+        Returns
+        -------
+        dict
+            {column: values}, each as long as `times`, in SI units and radians, NaN where it was not
+            measured. Prescribed motions are among them, values at which a coordinate is held are not.
+
+        Examples
+        --------
+        >>> model = fisherhill.load_model("models/elbow8.osim")
+        >>> trial = fisherhill.load_trial("emg_data/curl_slow.sto", model)
+        >>> columns = trial.columns(model)
+        >>> list(columns)[:2], list(columns)[-1], len(columns["BRA"])
+        (['time', 'TRIlong'], 'elbow_flexion', 901)
+        >>> again = fisherhill.make_trial(model, columns | {"BRA": np.full(901, 0.1)})
+        """
+
+    def with_excitations(self, excitations: ArrayLike) -> Trial:
+        """A copy of the recording with other excitations.
+
+        Parameters
+        ----------
+        excitations : array, times x muscles
+            0 to 1, the columns as in `muscles`.
+
+        Returns
+        -------
+        Trial
+            A start that a model was fitted with for this trial holds for it as well; for the functions
+            that take several trials both are one and the same.
+
+        Raises
+        ------
+        ValueError
+            For another shape, or a value that is not 0 to 1; the line names muscle and time.
+        """
+
     def review(self, model: Model) -> _Rows[Remark]:
         """Unusual numbers of the trial, as check lists them beside warnings.
 
@@ -574,16 +622,19 @@ class RecordedFile:
     markers: dict[str, _Array]
     times: _Array
     frame_rate: float
-    channels: list[RecordedChannel]
+    channels: _Rows[RecordedChannel]
     remarks: list[str]
 
 def read_recording(file: _File) -> RecordedFile:
-    """Reads markers and signals of a C3D, XDF or TRC file, whose contents check shows.
+    """Reads markers and signals of a recording: any file that emg reads and that names its channels.
+
+    read_recording(file).channels.to_dataframe() lists them.
 
     Parameters
     ----------
     file : str or PathLike
-        (.c3d, .xdf, .trc)
+        Text export, .sto, .mot, .csv, .c3d, .xdf, .edf, .bdf or .trc (docs/emg.md). A file of columns
+        without a header needs the declarations of emg's configuration (write_emg_config).
 
     Returns
     -------
@@ -594,7 +645,7 @@ def read_recording(file: _File) -> RecordedFile:
     frame_rate : float
         [Hz]; NaN for a format without markers.
     channels : list
-        Analog channels, or those of all streams; names need not be unique. Each with
+        Analog channels, or those of all streams; names need not be unique. A table, each row with
 
         name, unit : str
             The unit of its values; empty: not stated in the file.
@@ -608,7 +659,37 @@ def read_recording(file: _File) -> RecordedFile:
     Raises
     ------
     ValueError
-        If the file cannot be read, contradicts itself or is of another format.
+        If the file cannot be read, contradicts itself, has no header or is of another format.
+    """
+
+@type_check_only
+class EmgConfigDraft:
+    channels: int
+    electrodes: int
+    is_complete: bool
+
+def write_emg_config(recordings: _File | Sequence[_File], file: _File) -> EmgConfigDraft:
+    """Writes a configuration of emg to begin with: the channels as comments, a table for every setting.
+
+    Parameters
+    ----------
+    recordings : str or PathLike, or list of these
+        File, or several of the same movement, as emg takes them.
+    file : str or PathLike
+        File (.toml) to write; one that is there is not overwritten.
+
+    Returns
+    -------
+    channels, electrodes : int
+        Number of channels of the recordings, and of those taken for EMG: in volts, or called EMG.
+    is_complete : bool
+        True: emg takes the file as it is, muscles called as their channels; False: comments say what is
+        needed.
+
+    Raises
+    ------
+    ValueError
+        If a recording cannot be read, or the file is there already or cannot be written.
     """
 
 # Muscles ------------------------------------------------------------------------------------------
@@ -1330,6 +1411,7 @@ def global_sensitivity(
     seed: int = 1,
     threads: int = 1,
     initial: dict[str, float] = {},
+    progress: _Progress = False,
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
@@ -1357,7 +1439,12 @@ def global_sensitivity(
         The same seed gives the same numbers with any number of threads.
     threads : int
         0: all cores.
-    initial, coordinate, lock, integrator, step
+    initial
+        As in sensitivity.
+    progress : bool or callable
+        True: a bar (tqdm); a function: called with the fraction done, 0 to 1, now and then; what it
+        raises ends the computation.
+    coordinate, lock, integrator, step
         As in sensitivity.
 
     Returns
@@ -1395,6 +1482,7 @@ class CostGradientResult(_Table):
     cost: float
     gradient: _Array
     excitation_gradient: list[_Array]
+    muscles: list[str]
 
 def cost_gradient(
     model: Model,
@@ -1458,7 +1546,10 @@ def cost_gradient(
     gradient : array, parameters
         Derivatives of the cost [1 / unit of the parameter]; NaN where the cost is.
     excitation_gradient : list of arrays, rows x muscles
-        For each trial, derivatives of the misfit in the excitation of each muscle at each row.
+        For each trial, derivatives of the misfit in the excitation of each muscle at each row, as it
+        drives the muscle: behind what parameters emg.… make of the trial's column.
+    muscles : list of str
+        Names of these columns: the muscles that are simulated.
 
     Raises
     ------
@@ -1466,6 +1557,97 @@ def cost_gradient(
         For no trial, an unknown parameter (with the nearest names), another number of values than of
         parameters, noise that is not > 0 or missing, measured moments, forces, lengths or activations,
         or a trial with known_mass_in_hand or known_arm_turn.
+    """
+
+@type_check_only
+class PredictionResult(_Table):
+    names: list[str]
+    units: list[str]
+    values: _Array
+    observed: list[str]
+    times: list[_Array]
+    outputs: list[_Array]
+    gradient: _Array | None
+    excitation_gradient: list[_Array] | None
+    muscles: list[str]
+
+def predict(
+    model: Model,
+    trials: Sequence[Trial],
+    parameters: Sequence[str],
+    values: ArrayLike | None = None,
+    *,
+    weights: Sequence[ArrayLike] | None = None,
+    observe: Sequence[str] = [],
+    threads: int = 1,
+    initial: dict[str, float] = {},
+    coordinate: str | Sequence[str] = [],
+    lock: dict[str, float] = {},
+    integrator: _Integrator = "vi",
+    step: float | None = None,
+) -> PredictionResult:
+    """What would be measured with other values of parameters, and derivatives of a weighted sum of it.
+
+    With weights w the gradient is that of sum(w * outputs) over all trials: the transposed Jacobian of
+    the outputs times w, by one sweep back in time, which takes about as long as four simulations,
+    however many parameters there are. fisherhill.torch and fisherhill.jax are made of this.
+
+    Parameters
+    ----------
+    model : Model
+    trials : list of Trial
+        At least one; outputs are at the times at which the coordinate was measured, or at every step.
+    parameters : list of str
+        Names, which may contain *, or ['all']; list_parameters lists them.
+    values : array, parameters, optional
+        Where to simulate; default: the model's values.
+    weights : list of arrays, optional
+        For each trial as many numbers as it has outputs [1 / unit of the output]; default: no gradient.
+        Outputs must then be coordinates, speeds or markers.
+    observe : list of str
+        Channels, named as columns of a trial (sensitivity lists them); default: the first free
+        coordinate.
+    threads : int
+        Trials simulated at once; 0: as many as there are processors.
+    initial, coordinate, lock, integrator, step
+        As in sensitivity.
+
+    Returns
+    -------
+    names, units : list of str
+        Of the parameters.
+    values : array, parameters
+        Where it was simulated.
+    observed : list of str
+        The channels, as in observe.
+    times : list of arrays
+        Of each trial [s].
+    outputs : list of arrays
+        Of each trial in the unit of the channel, channel after channel; NaN behind the end of a
+        simulation that ends early.
+    gradient : array, parameters, or None
+        Derivatives of sum(w * outputs) [1 / unit of the parameter]; NaN where a simulation ends early.
+    excitation_gradient : list of arrays, rows x muscles, or None
+        For each trial, derivatives in the excitation of each muscle at each row.
+    muscles : list of str
+        Names of these columns: the muscles that are simulated.
+
+    Raises
+    ------
+    ValueError
+        For no trial, an unknown parameter (with the nearest names), another number of values than of
+        parameters or of weights than of outputs, a channel that cannot be observed or has no gradient,
+        or a trial with known_mass_in_hand or known_arm_turn.
+
+    Examples
+    --------
+    >>> model = fisherhill.load_model("models/elbow8.osim")
+    >>> trial = fisherhill.load_trial("emg_data/curl_slow.sto", model)
+    >>> end = np.zeros(451)
+    >>> end[-1] = 1
+    >>> found = fisherhill.predict(model, [trial], ["hand.mass"], [0.5], weights=[end])
+    >>> bool(found.gradient[0] < 0)  # a heavier hand ends lower
+    True
     """
 
 # Ensembles ----------------------------------------------------------------------------------------
@@ -1553,6 +1735,7 @@ def ensemble(
     band_points: int = 46,
     threads: int = 1,
     initial: dict[str, float] = {},
+    progress: _Progress = False,
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
@@ -1600,6 +1783,9 @@ def ensemble(
         Simulations at once; 0: as many as there are processors.
     initial : dict
         {coordinate: initial value [rad] or [m]}, at rest. Default: as in replay.
+    progress : bool or callable
+        True: a bar (tqdm); a function: called with the fraction done, 0 to 1, now and then; what it
+        raises ends the computation.
     coordinate : str or list of str
         The free coordinate, or several. Default: as in replay.
     lock, integrator, step
@@ -2013,6 +2199,7 @@ def calibrate(
     threads: int = 1,
     profile: Sequence[str] = [],
     bootstrap: int = 0,
+    progress: _Progress = False,
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
@@ -2060,6 +2247,9 @@ def calibrate(
         Parameters whose profile likelihood is computed.
     bootstrap : int
         Number of residual-bootstrap replicates, 0 or at least 20.
+    progress : bool or callable
+        True: a bar (tqdm); a function: called with the fraction done, 0 to 1, now and then; what it
+        raises ends the computation.
     coordinate, lock, integrator, step
         As in replay, but the integrator must be 'vi' or 'vi-left'. Without a step it is 0.01 s, and
         half as long, down to 0.00125 s, as long as halving it changes angles by more than 0.2
@@ -2215,6 +2405,7 @@ def design(
     seed: int = 1,
     threads: int = 1,
     initial: dict[str, float] = {},
+    progress: _Progress = False,
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
@@ -2277,7 +2468,12 @@ def design(
         nuisance parameters.
     seed, threads : int
         The same seed gives the same numbers with any number of threads; 0 threads: all cores.
-    initial, coordinate, lock, integrator, step
+    initial
+        As in sensitivity. Prescribed coordinates move as in the trial.
+    progress : bool or callable
+        True: a bar (tqdm); a function: called with the fraction of the search, 0 to 1, now and then; what it
+        raises ends the computation.
+    coordinate, lock, integrator, step
         As in sensitivity. Prescribed coordinates move as in the trial.
 
     Returns
@@ -2384,6 +2580,7 @@ def separate(
     seed: int = 1,
     threads: int = 1,
     initial: dict[str, float] = {},
+    progress: _Progress = False,
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
@@ -2408,7 +2605,12 @@ def separate(
         As in design.
     candidates, generations, seed, threads
         As in design; there is no gradient search.
-    initial, coordinate, lock, integrator, step
+    initial
+        As in design.
+    progress : bool or callable
+        True: a bar (tqdm); a function: called with the fraction done, 0 to 1, now and then; what it
+        raises ends the computation.
+    coordinate, lock, integrator, step
         As in design.
 
     Returns
@@ -2737,6 +2939,7 @@ def discover(
     effects: Sequence[_File] = [],
     max_effects: int = 3,
     input_scatter: float | None = None,
+    progress: _Progress = False,
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
     integrator: _Integrator = "vi",
@@ -2764,6 +2967,9 @@ def discover(
     input_scatter : float, optional
         Noise of the EMG that is tolerated, as a fraction of each muscle's moment, >= 0; a larger residual
         counts as a missing effect. Default: 0.075.
+    progress : bool or callable
+        True: a bar (tqdm); a function: called with the fraction done, 0 to 1, now and then; what it
+        raises ends the computation.
     coordinate : str or list of str
         Free coordinates, which are in question. Where none is free, those that are prescribed and whose
         moment the trials measure are. Default: the measured ones.
@@ -3029,6 +3235,7 @@ def discover_robot(
     step: float | None = None,
     input_scatter: float | None = None,
     ignore_extra: bool = False,
+    progress: _Progress = False,
 ) -> RobotDiscoveryResult:
     """Finds and names the effect that a robot's model lacks.
 
@@ -3059,6 +3266,9 @@ def discover_robot(
         missing effect. Default: 0.075.
     ignore_extra : bool
         Ignore unknown columns.
+    progress : bool or callable
+        True: a bar (tqdm); a function: called with the fraction done, 0 to 1, now and then; what it
+        raises ends the computation.
 
     Returns
     -------
@@ -3201,6 +3411,7 @@ def study(
     each: Callable[[StudyRow], object] | None = None,
     seed: int = 1,
     threads: int = 1,
+    progress: _Progress = False,
 ) -> _PlottedRows[StudyRow]:
     """Carries the subjects of a study through emg, calibrate with its held-out test, and discover.
 
@@ -3224,6 +3435,8 @@ def study(
         Of calibrate.
     threads : int
         Of calibrate.
+    progress : bool or callable
+        As of calibrate; the fraction of the subjects that are done.
 
     Returns
     -------
@@ -3255,6 +3468,77 @@ def study(
     ------
     ValueError
         As read_study does, and for a name that is no subject's.
+    """
+
+# Pages --------------------------------------------------------------------------------------------
+
+def explore(
+    model: _File,
+    trials: _File | Sequence[_File],
+    out: _File,
+    *,
+    verdict: _File = "",
+    parameters: str | Sequence[str] = (),
+    noise: float = 0.017453292519943295,
+    values: dict[str, float] = {},
+    prescribe: str | Sequence[str] = (),
+    initial: dict[str, float] = {},
+    wrap_as_cylinder: str | Sequence[str] = (),
+    ignore_extra: bool = False,
+    force: bool = False,
+    coordinate: str | Sequence[str] = (),
+    lock: dict[str, float] = {},
+    integrator: Literal["vi", "vi-left", "rk4"] = "vi",
+    step: float | None = None,
+) -> str:
+    """Writes a page that simulates: parameters as sliders, curves, the limb in 3-D; one file, offline.
+
+    The program `fisherhill` writes it, which must be on the PATH, or named in the environment variable
+    FISHERHILL_PROGRAM.
+
+    Parameters
+    ----------
+    model : str or PathLike
+        File of the model; Model.write makes one.
+    trials : str or PathLike, or list of these
+        Files of trials.
+    out : str or PathLike
+        Folder for the page.
+    verdict : str or PathLike
+        Folder of a result of `fisherhill discover`: the page shows its model with and without the
+        effect; empty: none.
+    parameters : str or list of str
+        Names of parameters with a slider, which may contain *; default: the twelve that move the motion
+        most.
+    noise : float
+        Standard deviation of measured angles [rad], for what the trials say of the parameters; default:
+        1 degree, and 1 mm for translations.
+    values : dict
+        {parameter: value} with which the page begins, as in Model.with_parameters.
+    prescribe : str or list of str
+        As in load_trial.
+    initial : dict
+        {coordinate: initial value [rad] or [m]}.
+    wrap_as_cylinder : str or list of str
+        Wrap ellipsoids to replace by cylinders, as Model.with_cylinders does.
+    ignore_extra : bool
+        As in load_trial.
+    force : bool
+        True: replace a result that is in the folder.
+    coordinate, lock, integrator, step
+        As in replay, but a page has no 'cvode'.
+
+    Returns
+    -------
+    str
+        File name of the page.
+
+    Raises
+    ------
+    ValueError
+        What the program says of bad input, in one line.
+    RuntimeError
+        If the program is not there, or fails.
     """
 
 # Robots -------------------------------------------------------------------------------------------

@@ -163,6 +163,20 @@ class CostGradientResult(Table):
         return f"cost {self.cost:.6g}"
 
 
+class PredictionResult(Table):
+    _indexed = False
+
+    def _columns(self):
+        columns = {
+            "trial": np.repeat(np.arange(len(self.times)), [len(one) for one in self.times]),
+            "time": np.concatenate(self.times),
+        }
+        by_channel = [np.split(one, len(self.observed)) for one in self.outputs]
+        for i, name in enumerate(self.observed):
+            columns[name] = np.concatenate([one[i] for one in by_channel])
+        return columns
+
+
 class EnsembleResult(Plotted):
     _indexed = False
 

@@ -8,6 +8,7 @@ import tempfile
 from types import SimpleNamespace
 
 from . import _fisherhill as fh
+from ._progress import listener
 from ._results import StudyRows
 
 
@@ -178,13 +179,21 @@ def _asked(plan, names):
     return [subject for subject in plan.subjects if subject.name in names]
 
 
-def study(file, *, subjects=None, each=None, seed=1, threads=1):
+def study(file, *, subjects=None, each=None, seed=1, threads=1, progress=False):
     plan = fh.read_study(file)
+    asked = _asked(plan, subjects)
+    told = listener(progress, "study")
     rows = StudyRows()
-    for subject in _asked(plan, subjects):
-        rows.append(_row(plan, subject, seed, threads))
-        if each is not None:
-            each(rows[-1])
+    try:
+        for subject in asked:
+            rows.append(_row(plan, subject, seed, threads))
+            if each is not None:
+                each(rows[-1])
+            if told is not None:
+                told(len(rows) / len(asked))
+    finally:
+        if told is not None:
+            told.close()
     return rows
 
 
