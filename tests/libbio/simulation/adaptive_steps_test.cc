@@ -5,6 +5,7 @@
 
 #include "bio/analysis/compare.h"
 #include "bio/simulation/simulate_batch.h"
+#include "simulation/step_control.h"
 #include "support/numbers.h"
 #include "support/shipped_elbow.h"
 
@@ -40,6 +41,58 @@ struct AdaptiveCase {
   SystemState start;
   Trajectory reference;
 };
+
+/// Parts of one length under a motion q(t) of the elbow, fibres at rest; which of them is refused
+/// first.
+template <class Motion>
+int firstRefused(double step, double h, const Motion& q) {
+  const ShippedElbow elbow;
+  SimulationOptions options;
+  options.integrator = Integrator::variationalAdaptive;
+  options.step = step;
+  struct {
+    Eigen::Matrix<double, 1, 1> q;
+    Eigen::VectorXd fibreLength;
+  } begin, end;
+  begin.fibreLength = end.fibreLength =
+      Eigen::VectorXd::Constant(static_cast<Eigen::Index>(elbow.system.numMuscles()), 0.1);
+  stepping::StepControl<1> control(elbow.system, options);
+  const auto meanSpeed = [&](int k) {
+    return Eigen::Matrix<double, 1, 1>((q(k * h) - q((k - 1) * h)) / h);
+  };
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(begin.fibreLength.size());
+  for (int k = 1; k <= 12; ++k) {
+    const stepping::LastParts<1> last{meanSpeed(k - 1), meanSpeed(k - 2), still, still, h, h};
+    begin.q[0] = q((k - 1) * h);
+    end.q[0] = q(k * h);
+    if (!control.accepts(h, begin, end, last)) return k;
+    control.take(last);
+  }
+  return 0;
+}
+
+// δq = h³ q‴/12 may be 1.5 times what is allowed, H³·1.25 rad/s³: q‴ = 22.5 rad/s³ in whole steps.
+TEST(StepControl, RefusesAThirdDerivativeThatIsTooLarge) {
+  const auto cubic = [](double third) {
+    return [third](double t) { return third * std::pow(t + 1, 3) / 6; };
+  };
+  // the first part has no q‴ before it, so that all of it counts as new
+  EXPECT_EQ(firstRefused(0.02, 0.02, cubic(11)), 0);
+  EXPECT_EQ(firstRefused(0.02, 0.02, cubic(24)), 1);
+  EXPECT_EQ(firstRefused(0.02, 0.02, [](double t) { return 20 * t * t; }), 0);
+}
+
+// A jump Δa of the acceleration has q‴ = Δa/2h; of a short part the speed decides: its share of the
+// error is H·Δa·h/24, that of the position h²·Δa/24.
+TEST(StepControl, RefusesAJumpOfTheAccelerationByWhatItDoesToTheSpeed) {
+  const double H = 0.02, h = H / 8;
+  const auto jump = [&](double size) {
+    return [size, h](double t) { return t < 5 * h ? 0 : size * std::pow(t - 5 * h, 2) / 2; };
+  };
+  const double least = 1.5 * 1.25 * H * H * 24 / h;
+  EXPECT_EQ(firstRefused(H, h, jump(0.95 * least)), 0);
+  EXPECT_EQ(firstRefused(H, h, jump(1.05 * least)), 6);
+}
 
 // Half the step is an eighth of the error of a part, so that of the motion falls with about the
 // square; parts are halves and no smooth function of the step, hence the wide bounds.
