@@ -180,7 +180,7 @@ py::object compare(const bio::Model& model, const bio::Trial& trial,
     const auto found = bio::integratorNamed(name);
     if (!found) {
       throw std::invalid_argument(
-          fmt::format("integrators: '{}', must be rk4, vi, vi-left or cvode", name));
+          fmt::format("integrators: '{}', must be rk4, vi, vi-left, vi-adaptive or cvode", name));
     }
     options.integrators.push_back(*found);
   }
@@ -237,8 +237,9 @@ py::object compareMuscles(const bio::Model& model, const bio::Trial& trial,
   const SystemChoice choice = systemChoice(model, {trial}, coordinate, lock, integrator, step);
   const auto known = bio::integratorNamed(integrator);
   if (!known || !bio::isVariational(*known)) {
-    throw std::invalid_argument(fmt::format(
-        "integrator '{}', must be vi or vi-left, which have sensitivities", integrator));
+    throw std::invalid_argument(
+        fmt::format("integrator '{}', must be vi-adaptive, vi or vi-left, which have sensitivities",
+                    integrator));
   }
   std::vector<bio::MuscleClassMotion> found;
   interruptible([&](const std::atomic<bool>& goOn) {

@@ -188,7 +188,7 @@ bio::SimulationOptions SystemChoice::simulation() const {
   const auto found = bio::integratorNamed(integrator);
   if (!found) {
     throw std::invalid_argument(
-        fmt::format("integrator '{}', must be vi, vi-left, rk4 or cvode", integrator));
+        fmt::format("integrator '{}', must be vi, vi-left, vi-adaptive, rk4 or cvode", integrator));
   }
   bio::SimulationOptions options;
   options.integrator = *found;

@@ -234,7 +234,7 @@ class Compare(AgainstProgram):
                 fh.compare(self.model, self.trial, **more)
         with self.assertRaisesRegex(ValueError, "Hill"):
             fh.compare_muscles(self.model, self.trial, classes=["Hill"])
-        with self.assertRaisesRegex(ValueError, "must be vi or vi-left"):
+        with self.assertRaisesRegex(ValueError, "must be vi-adaptive, vi or vi-left"):
             fh.compare_muscles(self.model, self.trial, integrator="rk4")
         with self.assertRaises(ValueError):
             fh.compare_muscles(self.model, self.trial, classes=["Thelen2003"], noise=0.0)

@@ -32,14 +32,15 @@ class Compare : public Command {
     addTrialArgument(options, trial_);
     options
         .add_option("--integrators", integrators_,
-                    "integrators to compare, of rk4, vi, vi-left, cvode")
+                    "integrators to compare, of rk4, vi, vi-left, vi-adaptive, cvode")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->type_name("NAMES")
         ->default_str("rk4,vi,vi-left,cvode");
     options
         .add_option("--steps", steps_,
-                    "time steps [s], in rising order; for cvode the interval of its output")
+                    "time steps [s], in rising order; for cvode the interval of its output, for "
+                    "vi-adaptive the longest step")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->type_name("SECONDS")
@@ -137,8 +138,9 @@ class Compare : public Command {
       throw std::invalid_argument("--muscles excludes --integrators, --steps and --also");
     }
     if (!simulation_.isVariational()) {
-      throw std::invalid_argument(fmt::format(
-          "--integrator {}: must be vi or vi-left with --muscles", simulation_.integrator));
+      throw std::invalid_argument(
+          fmt::format("--integrator {}: must be vi-adaptive, vi or vi-left with --muscles",
+                      simulation_.integrator));
     }
     if (classes_.size() == 1 && classes_.front() == "all") {
       classes_ = {"Schutte1993", "Thelen2003", "Millard2012", "DeGrooteFregly2016", "RigidTendon"};
@@ -227,7 +229,7 @@ class Compare : public Command {
   static bio::Integrator integratorNamed(const std::string& name) {
     if (const auto found = bio::integratorNamed(name)) return *found;
     throw std::invalid_argument(
-        fmt::format("--integrators: '{}', must be rk4, vi, vi-left or cvode", name));
+        fmt::format("--integrators: '{}', must be rk4, vi, vi-left, vi-adaptive or cvode", name));
   }
 
   std::vector<AlsoCurve> readAlso(const bio::Coordinate& coordinate, Summary& summary) const {

@@ -21,6 +21,8 @@ std::string longName(bio::Integrator integrator) {
       return "variational (vi)";
     case bio::Integrator::variationalLeft:
       return "left-forced variational (vi-left)";
+    case bio::Integrator::variationalAdaptive:
+      return "adaptive variational (vi-adaptive)";
     case bio::Integrator::cvode:
       break;
   }

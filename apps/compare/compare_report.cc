@@ -241,7 +241,8 @@ Report compareReport(const CompareFindings& f) {
   report.details.push_back(Paragraph{fmt::format(
       "Times are medians of {} runs. The energy error is the largest difference between kinetic "
       "plus potential energy and the work of muscles and passive forces. For CVODE the step is the "
-      "interval of its output; its internal steps follow from a relative tolerance of 1e-10. "
+      "interval of its output; its internal steps follow from a relative tolerance of 1e-10. For "
+      "vi-adaptive it is the longest step. "
       "Halved steps are those that did not converge in one piece.",
       f.options.timings)});
   if (!f.system.notes().empty()) {

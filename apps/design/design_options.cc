@@ -262,9 +262,9 @@ void checkDesignOptions(const DesignOptions& typed) {
     throw std::invalid_argument("--torque 0 without --excite leaves nothing to change");
   }
   if (!typed.simulation.isVariational()) {
-    throw std::invalid_argument(
-        fmt::format("--integrator {}: must be vi or vi-left, which alone have sensitivities",
-                    typed.simulation.integrator));
+    throw std::invalid_argument(fmt::format(
+        "--integrator {}: must be vi-adaptive, vi or vi-left, which alone have sensitivities",
+        typed.simulation.integrator));
   }
   if (typed.monteCarlo > 0 && !typed.nuisance.empty()) {
     throw std::invalid_argument("--monte-carlo cannot be combined with --nuisance");

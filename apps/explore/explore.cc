@@ -139,9 +139,10 @@ class Explore : public Command {
       throw std::invalid_argument(
           "--prescribe-cutoff: a page takes prescribed motions as they are in the trial");
     }
-    if (simulation_.integrator == "cvode") {
+    if (simulation_.integrator == "cvode" || simulation_.integrator == "vi-adaptive") {
       throw std::invalid_argument(
-          "--integrator cvode: a page has vi, vi-left and rk4, must be one of them");
+          fmt::format("--integrator {}: a page has vi, vi-left and rk4, must be one of them",
+                      simulation_.integrator));
     }
   }
 

@@ -122,8 +122,9 @@ void addSimulationOptions(CLI::App& subcommand, SimulationOptions& options) {
       .add_option(
           "--integrator", options.integrator,
           "vi (midpoint variational, forces at both ends of a step, second order), vi-left (the "
-          "same with forces at the left end only, first order), rk4 or cvode (adaptive reference)")
-      ->check(CLI::IsMember({"vi", "vi-left", "rk4", "cvode"}))
+          "same with forces at the left end only, first order), vi-adaptive (vi in parts of a step "
+          "as short as their errors ask for), rk4 or cvode (adaptive reference)")
+      ->check(CLI::IsMember({"vi", "vi-left", "vi-adaptive", "rk4", "cvode"}))
       ->capture_default_str()
       ->group(simulationGroup);
   subcommand

@@ -14,7 +14,7 @@ namespace app {
 /// The options that every subcommand with a simulation has, as they were typed; names are checked
 /// against the model later.
 struct SimulationOptions {
-  std::string integrator = "vi";         ///< vi, vi-left, rk4 or cvode
+  std::string integrator = "vi";         ///< vi, vi-left, vi-adaptive, rk4 or cvode
   std::optional<double> step;            ///< Δt [s] > 0; see stepOrDefault
   std::vector<std::string> coordinates;  ///< the free ones; empty: chooseCoordinates() chooses
   bool areChosen = false;                ///< `coordinates` were chosen, not typed

@@ -38,6 +38,13 @@ void Summary::setSimulation(const std::string& integrator, double step, double d
                                : ", the forces at the beginning of a step,",
             every),
         Publication::wilson);
+  } else if (integrator == "vi-adaptive") {
+    say(fmt::format("Motions are simulated by a midpoint variational integrator ({}), the forces "
+                    "shared by both ends of a step, with steps{} and shorter ones where their "
+                    "estimated errors ask for it; the states of the muscles are solved implicitly "
+                    "within each step.",
+                    citation(Publication::wilson), every),
+        Publication::wilson);
   } else if (integrator == "cvode") {
     say(fmt::format("Motions are simulated by CVODE ({}) with a variable step, its values taken at "
                     "steps{}.",

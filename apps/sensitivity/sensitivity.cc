@@ -192,9 +192,9 @@ class Sensitivity : public Command {
       throw std::invalid_argument("--profile and --global require --parameters NAMES");
     }
     if ((all_ || !names_.empty()) && !simulation_.isVariational()) {
-      throw std::invalid_argument(
-          fmt::format("--integrator {}: must be vi or vi-left, which alone have sensitivities",
-                      simulation_.integrator));
+      throw std::invalid_argument(fmt::format(
+          "--integrator {}: must be vi-adaptive, vi or vi-left, which alone have sensitivities",
+          simulation_.integrator));
     }
   }
 

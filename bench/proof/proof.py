@@ -4,7 +4,9 @@
     bench/proof/proof.py PROGRAM [--beside PROGRAM] [--rounds N] [--shared DIR] [--out DIR]
 
 PROGRAM is `build/program/apps/fisherhill`. Every motion is simulated by `fisherhill compare`, which measures error and
-time of each integrator and step against a converged reference; a time is the median of the rounds. `--beside` measures
+time of each integrator and step against a converged reference; a time is the median of the rounds; one between two steps of `vi`
+or `rk4` lies on the line between them, of `vi-adaptive` the longest of the steps counts from which on no shorter one has a
+larger error. `--beside` measures
 another build of the program in alternation with it. OpenSim's times are those of opensim.csv: OpenSim 4.6, measured on
 2026-11-27 on a machine of this class, beside FisherHill's commit 501a1df, which is what to build for `--beside`. Written are proof.csv (all runs),
 proof.md (the table) and, with matplotlib, proof.svg. Motions of models that lie in `--shared` (default ../shared) are
@@ -24,7 +26,8 @@ import tempfile
 
 here = pathlib.Path(__file__).resolve().parent
 top = here.parents[1]
-STEPS = {"vi": [0.001, 0.0025, 0.005, 0.01, 0.02], "rk4": [0.0001, 0.0002, 0.0004], "cvode": [0.01]}
+STEPS = {"vi": [0.001, 0.0025, 0.005, 0.01, 0.02],
+         "vi-adaptive": [0.0025, 0.005, 0.0075, 0.01, 0.0125, 0.015, 0.02, 0.03, 0.04, 0.05], "rk4": [0.0001, 0.0002, 0.0004], "cvode": [0.01]}
 NOT_STATED = 0.01  # is what OpenSim's errors that nobody stated are taken to be [deg]
 DEFAULT = ("vi", 0.01)  # the program's integrator and step [s]
 
@@ -64,11 +67,12 @@ def motions(shared):
     ]
 
 
-def measured(program, motion):
+def measured(program, motion, integrators=STEPS):
     """Rows of compare: (integrator, step) -> (RMS error [deg], time [ms])."""
     found = {}
     with tempfile.TemporaryDirectory() as folder:
-        for integrator, steps in STEPS.items():
+        for integrator in integrators:
+            steps = STEPS[integrator]
             out = pathlib.Path(folder) / integrator
             words = [program, "compare", motion.model, motion.trial, "--integrators", integrator, "--steps", ",".join(map(str, steps)),
                      "--ignore-extra", "--threads", "1", "--out", out]
@@ -97,6 +101,19 @@ def to_error(runs, integrator, error):
     return min(inside) if inside else None
 
 
+def by_longest_step(runs, integrator, error):
+    """Time of the longest step that has no larger error, and no shorter one has; None: there is none. For an integrator
+    whose error does not fall evenly with the step, so that nothing can be said between its runs."""
+    time = None
+    for (name, _), (e, t) in sorted(runs.items(), key=lambda run: run[0][1]):
+        if name != integrator:
+            continue
+        if e > error:
+            break
+        time = t
+    return time
+
+
 def median_runs(rounds):
     return {key: tuple(statistics.median(one[key][i] for one in rounds if key in one) for i in (0, 1)) for key in rounds[0]}
 
@@ -105,17 +122,23 @@ def cell(number):
     return "–" if number is None else f"{number:.3g}"
 
 
+def times_as_fast(low, high, time):
+    if time is None:
+        return "–"
+    return f"{low / time:.0f}" if low == high else f"{low / time:.0f}–{high / time:.0f}"
+
+
 def table(results, opensim):
-    text = ("| motion | OpenSim | its time [ms] | at an error of [deg] | vi [ms] | times as fast | rk4 [ms] | cvode [ms] |\n"
-            "|---|---|---|---|---|---|---|---|\n")
+    text = ("| motion | OpenSim | its time [ms] | at an error of [deg] | vi [ms] | times as fast | vi-adaptive [ms] | times as fast | rk4 [ms] | cvode [ms] |\n"
+            "|---|---|---|---|---|---|---|---|---|---|\n")
     for motion, runs, _ in results:
         for row in (row for row in opensim if row["motion"] == motion.name):
             error = float(row["error_deg"] or NOT_STATED)
             low, high = float(row["least_ms"]), float(row["most_ms"])
-            vi = to_error(runs, "vi", error)
-            ratio = "–" if vi is None else (f"{low / vi:.0f}" if low == high else f"{low / vi:.0f}–{high / vi:.0f}")
+            vi, adaptive = to_error(runs, "vi", error), by_longest_step(runs, "vi-adaptive", error)
             text += (f"| {motion.words} | {row['integrator']} {row['accuracy']} | {low:g}{'' if low == high else f'–{high:g}'} | "
-                     f"{error:g}{'' if row['error_deg'] else ' (not stated)'} | {cell(vi)} | {ratio} | {cell(to_error(runs, 'rk4', error))} | "
+                     f"{error:g}{'' if row['error_deg'] else ' (not stated)'} | {cell(vi)} | {times_as_fast(low, high, vi)} | {cell(adaptive)} | {times_as_fast(low, high, adaptive)} | "
+                     f"{cell(to_error(runs, 'rk4', error))} | "
                      f"{cell(to_error(runs, 'cvode', error))} |\n")
     return text
 
@@ -138,7 +161,7 @@ def plot(results, opensim, path):
     except ImportError:
         return False
     figure, axes = plt.subplots(2, 3, figsize=(11, 6.5), sharey=True)
-    marks = {"vi": ("o-", "#0072b2"), "rk4": ("s-", "#009e73"), "cvode": ("^", "#56b4e9")}
+    marks = {"vi": ("o-", "#0072b2"), "vi-adaptive": ("v-", "#e69f00"), "rk4": ("s-", "#009e73"), "cvode": ("^", "#56b4e9")}
     for axis, (motion, runs, _) in zip(axes.flat, results):
         for integrator, (mark, colour) in marks.items():
             own = sorted((e, t) for (name, _), (e, t) in runs.items() if name == integrator and e > 0)
@@ -184,7 +207,7 @@ def main():
         for _ in range(words.rounds):
             now.append(measured(words.program, motion))
             if words.beside:
-                before.append(measured(words.beside, motion))
+                before.append(measured(words.beside, motion, ["vi"]))
         results.append((motion, median_runs(now), median_runs(before) if before else None))
         print(f"{motion.name}: {results[-1][1].get(DEFAULT)}", file=sys.stderr)
     if not results:

@@ -249,7 +249,7 @@ Comparison compareIntegrators(const MusculoskeletalSystem& system,
   rotationsOf(system);
   const auto fixedStep = static_cast<std::size_t>(
       std::count_if(options.integrators.begin(), options.integrators.end(),
-                    [](Integrator integrator) { return integrator != Integrator::cvode; }));
+                    [](Integrator integrator) { return compare::hasFixedStep(integrator); }));
   const std::size_t cells = options.integrators.size() * options.steps.size();
   // a limit and an order are worth about three timed cells each
   const auto work = static_cast<double>(2 + cells + 6 * fixedStep);
@@ -270,7 +270,7 @@ Comparison compareIntegrators(const MusculoskeletalSystem& system,
       comparison.cells.push_back(runs.cell(integrator, step));
       advance(1);
     }
-    if (integrator == Integrator::cvode) continue;
+    if (!compare::hasFixedStep(integrator)) continue;
     comparison.limits.push_back(runs.limit(integrator));
     advance(3);
     comparison.orders.push_back(runs.order(integrator));

@@ -122,6 +122,7 @@ std::vector<double> orderSteps(Integrator integrator) {
               0.0001666666666666667,
               0.0002,
               0.00025};
+    case Integrator::variationalAdaptive:
     case Integrator::cvode:
       break;
   }

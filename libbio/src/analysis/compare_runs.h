@@ -6,6 +6,11 @@
 
 namespace bio::compare {
 
+/// Whether the step is what the integrator steps by, so that it has an order and a largest one.
+constexpr bool hasFixedStep(Integrator integrator) {
+  return integrator != Integrator::cvode && integrator != Integrator::variationalAdaptive;
+}
+
 /// One system under one excitation, simulated as often as it takes.
 class Runs {
  public:

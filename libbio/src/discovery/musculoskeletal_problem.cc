@@ -137,7 +137,7 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
   positive(options_.startSd, "standard deviation of the start");
   positive(options_.speedSd, "standard deviation of the start's speed");
   if (!isVariational(options_.simulation.integrator)) {
-    throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
+    throw std::invalid_argument("sensitivities: integrator must be vi-adaptive, vi or vi-left");
   }
   double lastStart = -HUGE_VAL, firstEnd = HUGE_VAL;
   for (const Trial& trial : trials) {

@@ -43,7 +43,7 @@ TrialPredictor::TrialPredictor(const ParameterCatalogue& catalogue, const System
       selection_(std::move(selection)),
       options_(options) {
   if (!isVariational(options.integrator)) {
-    throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
+    throw std::invalid_argument("sensitivities: integrator must be vi-adaptive, vi or vi-left");
   }
   for (const ObservedSeries& observed : series_) {
     size_ += observed.times.size();

@@ -88,7 +88,7 @@ SensitivityRun::SensitivityRun(const MusculoskeletalSystem& system,
   }
   const SensitivityOptions& used = options();
   if (!isVariational(used.simulation.integrator)) {
-    throw std::invalid_argument("sensitivities: integrator must be vi or vi-left");
+    throw std::invalid_argument("sensitivities: integrator must be vi-adaptive, vi or vi-left");
   }
   checkNodes(used.externalNodes, system);
   checkSlopes(used.externalSlopes, system);

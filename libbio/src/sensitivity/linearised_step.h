@@ -34,7 +34,7 @@ class LinearisedStep {
                  SystemConfiguration<N>& configuration)
       : system_(system),
         options_(options),
-        symmetric_(options.integrator == Integrator::variational),
+        symmetric_(bio::isSymmetric(options.integrator)),
         configuration_(configuration),
         others_(system),
         muscles_(system.numMuscles()),

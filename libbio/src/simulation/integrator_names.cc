@@ -8,6 +8,8 @@ const char* name(Integrator integrator) {
       return "vi";
     case Integrator::variationalLeft:
       return "vi-left";
+    case Integrator::variationalAdaptive:
+      return "vi-adaptive";
     case Integrator::rungeKutta4:
       return "rk4";
     case Integrator::cvode:
@@ -17,8 +19,9 @@ const char* name(Integrator integrator) {
 }
 
 std::optional<Integrator> integratorNamed(const std::string& text) {
-  for (const Integrator integrator : {Integrator::variational, Integrator::variationalLeft,
-                                      Integrator::rungeKutta4, Integrator::cvode}) {
+  for (const Integrator integrator :
+       {Integrator::variational, Integrator::variationalLeft, Integrator::variationalAdaptive,
+        Integrator::rungeKutta4, Integrator::cvode}) {
     if (text == name(integrator)) return integrator;
   }
   return std::nullopt;

@@ -178,6 +178,7 @@ Trajectory simulate(const MusculoskeletalSystem& system, const ExcitationSignal&
     switch (options.integrator) {
       case Integrator::variational:
       case Integrator::variationalLeft:
+      case Integrator::variationalAdaptive:
         return stepping::simulateVariational(system, excitation, start, options);
       case Integrator::rungeKutta4:
         return stepping::simulateRungeKutta4(system, excitation, start, options);

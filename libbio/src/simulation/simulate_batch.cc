@@ -109,7 +109,7 @@ class LaneGroup {
     step_.muscles = muscles_.data();
     step_.newtonTolerance = options.newtonTolerance;
     step_.maxIterations = options.maxIterations;
-    step_.symmetric = options.integrator == Integrator::variational;
+    step_.symmetric = isSymmetric(options.integrator);
   }
 
   void run(MakeSolver makeSolver) {
@@ -209,7 +209,9 @@ class LaneGroup {
 std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
                                          const SimulationOptions& options,
                                          LaneInstructions instructions) {
-  const bool known = isVariational(options.integrator) && !options.progress;
+  // lanes step together, so that none has parts of its own
+  const bool known = isVariational(options.integrator) &&
+                     options.integrator != Integrator::variationalAdaptive && !options.progress;
   std::vector<Trajectory> results(jobs.size());
   std::vector<std::optional<HingeModel<Single>>> arms(jobs.size());
   std::vector<bool> waiting(jobs.size(), true);

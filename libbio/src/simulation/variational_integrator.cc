@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "simulation/activation_player.h"
+#include "simulation/step_control.h"
 #include "simulation/step_tape.h"
 #include "simulation/switch_jump.h"
 #include "simulation/switch_search.h"
@@ -32,20 +33,22 @@ class VariationalRun {
         recorder_(system, numRows(options)),
         activation_(start.activation),
         middle_(start.activation),
+        control_(system, options),
         keptActivation_(static_cast<std::size_t>(options.maxHalvings) + 1, start.activation) {
     now_.q = start.q;
-    velocity_ = start.qDot;
-    options.prescribed.place(options.startTime, now_.q, velocity_);
+    last_.velocity = start.qDot;
+    options.prescribed.place(options.startTime, now_.q, last_.velocity);
     configuration_.moveTo(now_.q);
-    now_.p = configuration_.massMatrix() * velocity_;
+    now_.p = configuration_.massMatrix() * last_.velocity;
     now_.fibreLength = start.fibreLength;
-    velocityBefore_ = velocity_;
-    fibreVelocity_ = Eigen::VectorXd::Zero(start.fibreLength.size());
-    fibreVelocityBefore_ = fibreVelocity_;
-    length_ = lengthBefore_ = options.step;
+    last_.velocityBefore = last_.velocity;
+    last_.fibreVelocity = Eigen::VectorXd::Zero(start.fibreLength.size());
+    last_.fibreVelocityBefore = last_.fibreVelocity;
+    last_.length = last_.lengthBefore = options.step;
     next_ = now_;
     if (!system_.switches().empty()) sides_.emplace(system_);
-    recorder_.add(options.startTime, now_.q, velocity_, activation_, now_.fibreLength, 0, 0, 0);
+    recorder_.add(options.startTime, now_.q, last_.velocity, activation_, now_.fibreLength, 0, 0,
+                  0);
     if (tape_) tape_->begin(now_.q, now_.fibreLength, activation_, numRows(options_));
   }
 
@@ -67,7 +70,7 @@ class VariationalRun {
         break;
       }
       begin = end;
-      ++trajectory.steps;
+      trajectory.steps = control_.isUsed() ? parts_ : static_cast<long>(k);
       if (tape_) tape_->endRow();
       recorder_.add(t1, now_.q, speed(t1), activation_, now_.fibreLength, muscleWork_, passiveWork_,
                     externalWork_);
@@ -83,44 +86,57 @@ class VariationalRun {
   }
 
  private:
-  /// Moves now_ and activation_ from t0 to t1; in halves, and halves of them, where Newton fails or
-  /// a length has just jumped, and in two parts where a conditional path point comes or goes. One
-  /// that comes or goes very near to an end of the step does so at that end.
+  /// Moves now_ and activation_ from t0 to t1; in halves, and halves of them, where Newton fails, a
+  /// length has just jumped or the error would be too large, and in two parts where a conditional
+  /// path point comes or goes. One that comes or goes very near to an end of the step does so at
+  /// that end.
   bool advance(const TimeMark& begin, const TimeMark& end, int depth) {
     const double t0 = begin.value;
     const double t1 = end.value;
-    if (t1 - t0 > longestStepAfterJump(t0 - lastJump_)) {
-      const TimeMark middle = markMiddle(begin, end);
-      return advance(begin, middle, depth) && advance(middle, end, depth);
-    }
+    if (t1 - t0 > longestStepAfterJump(t0 - lastJump_)) return inHalves(begin, end, depth);
+    const bool mayBeHalved = depth < options_.maxHalvings;
+    if (mayBeHalved && control_.isTooLong(t1 - t0)) return inHalves(begin, end, depth + 1);
     Eigen::VectorXd& kept = keptActivation_[static_cast<std::size_t>(depth)];
     kept = activation_;
-    if (solve(t0, t1)) {
-      double split = 0;
-      const PathSwitch* met = findSwitch(t0, t1, kept, split);
-      if (met == nullptr) {
-        if (search_.isAtBegin() && lastJump_ != t0 && jumps()) {
-          lastJump_ = t0;
-          activation_ = kept;
-          player_.restart(t0);
-          return advance(begin, end, depth);
-        }
-        const bool jumpsAtEnd = search_.isAtEnd() && jumps();
-        accept(begin, end);
-        if (jumpsAtEnd) lastJump_ = t1;
-        return true;
-      }
-      const TimeMark middle = markSwitch(split, *met);
-      accept(begin, middle);
-      if (sides_->lengthJumps(*met, now_.q)) lastJump_ = split;
-      return advance(middle, end, depth);
+    if (!solve(t0, t1)) {
+      if (!mayBeHalved) return false;
+      if (depth == 0 || control_.isUsed()) ++recorder_.trajectory().halvedSteps;
+      goBack(t0, kept);
+      return inHalves(begin, end, depth + 1);
     }
-    if (depth >= options_.maxHalvings) return false;
-    if (depth == 0) ++recorder_.trajectory().halvedSteps;
-    activation_ = kept;
-    player_.restart(t0);
+    double split = t1;
+    const PathSwitch* met = findSwitch(t0, t1, kept, split);
+    if (met == nullptr && search_.isAtBegin() && lastJump_ != t0 && jumps()) {
+      lastJump_ = t0;
+      goBack(t0, kept);
+      return advance(begin, end, depth);
+    }
+    const double solved = met == nullptr ? t1 : split;
+    if (!control_.accepts(solved - t0, now_, next_, last_) && mayBeHalved) {
+      goBack(t0, kept);
+      return inHalves(begin, end, depth + 1);
+    }
+    if (met == nullptr) {
+      const bool jumpsAtEnd = search_.isAtEnd() && jumps();
+      accept(begin, end);
+      if (jumpsAtEnd) lastJump_ = t1;
+      return true;
+    }
+    const TimeMark middle = markSwitch(split, *met);
+    accept(begin, middle);
+    if (sides_->lengthJumps(*met, now_.q)) lastJump_ = split;
+    return advance(middle, end, depth);
+  }
+
+  bool inHalves(const TimeMark& begin, const TimeMark& end, int depth) {
     const TimeMark middle = markMiddle(begin, end);
-    return advance(begin, middle, depth + 1) && advance(middle, end, depth + 1);
+    return advance(begin, middle, depth) && advance(middle, end, depth);
+  }
+
+  /// Activations as at the time t0 of now_.
+  void goBack(double t0, const Eigen::VectorXd& activation) {
+    activation_ = activation;
+    player_.restart(t0);
   }
 
   /// Whether a length does at the switch that the step just solved crosses.
@@ -143,10 +159,10 @@ class VariationalRun {
     middle_ = activation_;
     player_.advance(tMiddle, t1, activation_);
     // the parabola through the last three ends
-    const double bend = h * (h + length_) / (length_ + lengthBefore_);
-    next_.q = now_.q + (h + bend) * velocity_ - bend * velocityBefore_;
+    const double bend = h * (h + last_.length) / (last_.length + last_.lengthBefore);
+    next_.q = now_.q + (h + bend) * last_.velocity - bend * last_.velocityBefore;
     next_.fibreLength =
-        now_.fibreLength + (h + bend) * fibreVelocity_ - bend * fibreVelocityBefore_;
+        now_.fibreLength + (h + bend) * last_.fibreVelocity - bend * last_.fibreVelocityBefore;
     options_.prescribed.place(t1, next_.q);
     result_ = stepper_.solve(h, tMiddle, now_, middle_, next_);
     count(result_.iterations);
@@ -167,15 +183,13 @@ class VariationalRun {
     if (!search_.begin(system_.switches(), now_.q, next_.q)) return nullptr;
     for (auto found = SwitchSearch::Found::again; found == SwitchSearch::Found::again;) {
       split = t0 + search_.fraction() * (t1 - t0);
-      activation_ = activationAtStart;
-      player_.restart(t0);
+      goBack(t0, activationAtStart);
       if (!solve(t0, split)) break;
       found = search_.take(next_.q[search_.which().freeIndex]);
       if (found == SwitchSearch::Found::met) return &search_.which();
     }
     // not to be met exactly: take the whole step as it is
-    activation_ = activationAtStart;
-    player_.restart(t0);
+    goBack(t0, activationAtStart);
     solve(t0, t1);
     return nullptr;
   }
@@ -184,12 +198,14 @@ class VariationalRun {
   void accept(const TimeMark& begin, const TimeMark& end) {
     const double h = end.value - begin.value;
     if (tape_) tape_->add(begin.index, end.index, next_.q, next_.fibreLength, middle_, activation_);
-    velocityBefore_ = velocity_;
-    velocity_ = (next_.q - now_.q) / h;
-    fibreVelocityBefore_.swap(fibreVelocity_);
-    fibreVelocity_ = (next_.fibreLength - now_.fibreLength) / h;
-    lengthBefore_ = length_;
-    length_ = h;
+    control_.take(last_);
+    ++parts_;
+    last_.velocityBefore = last_.velocity;
+    last_.velocity = (next_.q - now_.q) / h;
+    last_.fibreVelocityBefore.swap(last_.fibreVelocity);
+    last_.fibreVelocity = (next_.fibreLength - now_.fibreLength) / h;
+    last_.lengthBefore = last_.length;
+    last_.length = h;
     now_.q.swap(next_.q);
     now_.p.swap(next_.p);
     now_.fibreLength.swap(next_.fibreLength);
@@ -232,15 +248,14 @@ class VariationalRun {
   Recorder recorder_;
   Eigen::VectorXd activation_, middle_;
   Ends now_, next_;
-  // mean speeds of the last two steps, and their lengths [s]
-  Vector velocity_, velocityBefore_;
+  LastParts<N> last_;
+  StepControl<N> control_;
   Vector speed_, momentum_;
   Eigen::Matrix<double, N, N> massMatrix_;
   Eigen::LDLT<Eigen::Matrix<double, N, N>> factor_;
-  Eigen::VectorXd fibreVelocity_, fibreVelocityBefore_;
-  double length_, lengthBefore_;
   std::optional<SwitchSides<N>> sides_;                         ///< where there are switches
   double lastJump_ = -std::numeric_limits<double>::infinity();  ///< [s]
+  long parts_ = 0;
   double muscleWork_ = 0;
   double passiveWork_ = 0;
   double externalWork_ = 0;

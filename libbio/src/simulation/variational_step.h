@@ -4,9 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "simulation/coordinate_sums.h"
 #include "simulation/integrators.h"
 #include "simulation/other_forces.h"
+#include "simulation/step_control.h"
 
 namespace bio::stepping {
 
@@ -22,7 +25,8 @@ class VariationalStepper {
         options_(options),
         configuration_(system),
         others_(system),
-        symmetric_(options.integrator == Integrator::variational),
+        symmetric_(isSymmetric(options.integrator)),
+        enough_(0.0075 * allowedError(options)),
         rate_(system.numMuscles()),
         pieces_(system.numMuscles()),
         inverse_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.numMuscles()))),
@@ -138,7 +142,7 @@ class VariationalStepper {
       end.q += shorten * dq;
       end.fibreLength += shorten * residual_;
       const double correction = std::max(size, fibreSize);
-      if (isLast(correction, shorten == 1 ? previous : 0)) {
+      if (isEnough(result.iterations, correction, shorten == 1 ? previous : 0)) {
         finish(begin, h, share, {Mv, dq, dMv, dL_q, dPassive}, L_q, dTau, R, end, result);
         result.converged = true;
         failedPosture_.resize(0);
@@ -157,6 +161,17 @@ class VariationalStepper {
     if (correction > worthwhile || correction > 0.1 * previous) return false;
     const double ratio = correction / previous;
     return correction * ratio * ratio < 0.01 * options_.newtonTolerance;
+  }
+
+  /// isLast(), or in vi-adaptive: is what this correction leaves small beside the error that the
+  /// part may have? After a first one x₁ it is c x₁², with c as in the last part with a second.
+  bool isEnough(int iteration, double correction, double previous) {
+    if (iteration == 2 && previous > 0) contraction_ = correction / (previous * previous);
+    if (isLast(correction, previous)) return true;
+    if (!(enough_ > 0) || correction > 0.01) return false;
+    if (iteration == 1) return contraction_ * correction * correction < enough_;
+    const double ratio = correction / previous;
+    return ratio < 0.5 && correction * ratio * ratio < enough_;
   }
 
   /// A path that was lost, else the residual of the equations at the last iterate: for the message
@@ -294,6 +309,8 @@ class VariationalStepper {
   SystemConfiguration<N> configuration_;
   OtherForces<N> others_;
   bool symmetric_;
+  double enough_;  ///< 0, or what may be left of the unknowns [rad], [m] or ℓ0
+  double contraction_ = std::numeric_limits<double>::infinity();
   std::vector<FibreRateDerivatives> rate_;
   std::vector<SchuttePieces> pieces_;  ///< of the last iterate
   Eigen::VectorXd inverse_;

@@ -73,7 +73,7 @@ __all__ = [
 __version__: str
 
 _Array: TypeAlias = NDArray[np.float64]
-_Integrator: TypeAlias = Literal["vi", "vi-left", "rk4", "cvode"]
+_Integrator: TypeAlias = Literal["vi", "vi-left", "vi-adaptive", "rk4", "cvode"]
 _File: TypeAlias = str | PathLike[str]
 
 @type_check_only
@@ -784,9 +784,10 @@ def replay(
     lock : dict
         {coordinate: value [rad] or [m]} at which other coordinates are locked. Default: the model's
         default values.
-    integrator : {'vi', 'vi-left', 'rk4', 'cvode'}
+    integrator : {'vi', 'vi-left', 'vi-adaptive', 'rk4', 'cvode'}
         Midpoint variational (second order), the same with forces at the left end of a step only
-        (first order), Runge-Kutta (fourth order), or CVODE (adaptive).
+        (first order), 'vi' in parts of a step as short as their errors ask for, Runge-Kutta (fourth
+        order), or CVODE (adaptive).
     step : float, optional
         Time step [s] > 0; of CVODE the interval of the output. Default: the one with which the model
         was fitted, else 0.01 s (rk4: 0.0002 s).
@@ -1183,7 +1184,8 @@ def sensitivity(
     coordinate : str or list of str
         The free coordinate, or several, of which the first is the measured one.
     lock, integrator, step
-        As in replay, but the integrator must be 'vi' or 'vi-left', and the default step is 0.01 s.
+        As in replay, but the integrator must be variational ('vi', 'vi-left', 'vi-adaptive'), and the
+        default step is 0.01 s.
 
     Returns
     -------
@@ -1533,7 +1535,8 @@ def cost_gradient(
     threads : int
         Trials simulated at once; 0: as many as there are processors.
     coordinate, lock, integrator, step
-        As in replay, but the integrator must be 'vi' or 'vi-left', and the default step is 0.01 s.
+        As in replay, but the integrator must be variational ('vi', 'vi-left', 'vi-adaptive'), and the
+        default step is 0.01 s.
 
     Returns
     -------
@@ -1881,7 +1884,7 @@ class ConvergedReference:
 
 @type_check_only
 class IntegratorRun:
-    integrator: Literal["vi", "vi-left", "rk4", "cvode"]
+    integrator: _Integrator
     step: float
     outcome: Literal["ok", "unstable", "no solution"]
     why: str
@@ -1937,7 +1940,7 @@ def compare(
     ----------
     model : Model
     trial : Trial
-    integrators : list of {'vi', 'vi-left', 'rk4', 'cvode'}
+    integrators : list of {'vi', 'vi-left', 'vi-adaptive', 'rk4', 'cvode'}
         Each once; replay explains them.
     steps : list of float
         Time steps [s] > 0, rising; for 'cvode' the interval of its output.
@@ -2084,7 +2087,8 @@ def compare_muscles(
     coordinate : str or list of str
         The free coordinate, or several, of which the first is the measured one.
     lock, integrator, step
-        As in replay, but the integrator must be 'vi' or 'vi-left', and the default step is 0.01 s.
+        As in replay, but the integrator must be variational ('vi', 'vi-left', 'vi-adaptive'), and the
+        default step is 0.01 s.
 
     Returns
     -------
@@ -2251,8 +2255,8 @@ def calibrate(
         True: a bar (tqdm); a function: called with the fraction done, 0 to 1, now and then; what it
         raises ends the computation.
     coordinate, lock, integrator, step
-        As in replay, but the integrator must be 'vi' or 'vi-left'. Without a step it is 0.01 s, and
-        half as long, down to 0.00125 s, as long as halving it changes angles by more than 0.2
+        As in replay, but the integrator must be 'vi', 'vi-left' or 'vi-adaptive'. Without a step it is
+        0.01 s, and half as long, down to 0.00125 s, as long as halving it changes angles by more than 0.2
         standard deviations of the noise or an estimate by more than 0.25 of its own.
 
     Returns
@@ -2975,7 +2979,7 @@ def discover(
         moment the trials measure are. Default: the measured ones.
     lock : dict
         As in replay.
-    integrator : {'vi', 'vi-left'}
+    integrator : {'vi', 'vi-left', 'vi-adaptive'}
     step : float, optional
         Time step [s] > 0. Default: 0.01 s, halved where this is too long.
 

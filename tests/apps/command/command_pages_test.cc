@@ -157,9 +157,9 @@ TEST_F(Pages, BashOffersTheWordsFilesAndFoldersThatAValueMayBe) {
   std::ofstream(scratch / "arm one.osim") << "x";
   std::filesystem::create_directory(scratch / "results");
   EXPECT_THAT(offered({"fisherhill", "replay", "--integrator", ""}),
-              ElementsAre("cvode", "rk4", "vi", "vi-left"));
+              ElementsAre("cvode", "rk4", "vi", "vi-adaptive", "vi-left"));
   EXPECT_THAT(offered({"fisherhill", "replay", "--integrator", "=", "vi-"}),
-              ElementsAre("vi-left"));
+              ElementsAre("vi-adaptive", "vi-left"));
   EXPECT_THAT(offered({"fisherhill", "robot", "su"}), ElementsAre("suspended-mass"));
   EXPECT_THAT(offered({"fisherhill", "check", "arm"}), ElementsAre("arm one.osim"));
   EXPECT_THAT(offered({"fisherhill", "check", "--out", ""}), ElementsAre("results"));

@@ -191,7 +191,7 @@ TEST(CompareCommand, TellsWrongUseInOneLine) {
     EXPECT_EQ(scratch.listing(), before);
   };
   fails({"--integrators", ""}, "--integrators");
-  fails({"--integrators", "rk4,euler"}, "'euler', must be rk4, vi, vi-left or cvode");
+  fails({"--integrators", "rk4,euler"}, "'euler', must be rk4, vi, vi-left, vi-adaptive or cvode");
   fails({"--integrators", "vi,vi"}, "twice");
   fails({"--steps", ""}, "--steps");
   fails({"--steps=-0.01"}, "--steps: -0.01 s, must be > 0");

@@ -33,6 +33,8 @@ TEST(Methods, SayWhichIntegratorRan) {
            {"vi",
             "midpoint variational integrator (Wilson, thesis), the forces shared by both ends"},
            {"vi-left", "the forces at the beginning of a step"},
+           {"vi-adaptive",
+            "with steps of 0.002 s and shorter ones where their estimated errors ask"},
            {"rk4", "classical Runge–Kutta method of fourth order with a fixed step of 0.002 s"},
            {"cvode", "CVODE (Hindmarsh et al., 2005)"}}) {
     Summary summary{CommandContext{}};

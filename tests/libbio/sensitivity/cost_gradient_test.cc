@@ -101,6 +101,15 @@ TEST(CostGradient, IsTheForwardOneForTheLeftForcedScheme) {
             1e-9);
 }
 
+TEST(CostGradient, IsTheForwardOneForPartsOfStepsByTheirErrors) {
+  const ShippedElbow elbow("elbow8_passive", "curl_fast");
+  SimulationOptions options = forSeconds(0.8);
+  options.integrator = Integrator::variationalAdaptive;
+  EXPECT_LT(offForward(elbow.system, elbow.catalogue, elbow.catalogue.select({"all"}),
+                       elbow.excitation, options),
+            1e-9);
+}
+
 TEST(CostGradient, IsTheForwardOneForEmgThatIsDelayedAndShaped) {
   const ShippedElbow elbow("elbow8", "curl_slow", EmgMapping{{{"BRA", 1.1}}, 0.0123, -0.8});
   SimulationOptions options = forSeconds(0.4);

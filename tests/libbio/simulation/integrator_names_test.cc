@@ -8,10 +8,11 @@ namespace {
 TEST(SimulationNames, NameEveryIntegratorAndItsUsualStep) {
   EXPECT_EQ(integratorNamed("vi"), Integrator::variational);
   EXPECT_EQ(integratorNamed("vi-left"), Integrator::variationalLeft);
+  EXPECT_EQ(integratorNamed("vi-adaptive"), Integrator::variationalAdaptive);
   EXPECT_EQ(integratorNamed("rk4"), Integrator::rungeKutta4);
   EXPECT_EQ(integratorNamed("cvode"), Integrator::cvode);
   EXPECT_EQ(integratorNamed("euler"), std::nullopt);
-  for (const char* text : {"vi", "vi-left", "rk4", "cvode"}) {
+  for (const char* text : {"vi", "vi-left", "vi-adaptive", "rk4", "cvode"}) {
     EXPECT_STREQ(name(integratorNamed(text).value()), text);
     EXPECT_EQ(defaultStep(integratorNamed(text).value()), std::string(text) == "rk4" ? 2e-4 : 0.01);
   }

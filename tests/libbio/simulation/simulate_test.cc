@@ -234,8 +234,8 @@ TEST(SystemConfiguration, ShiftedALittleItIsThatOfThePlaceToItsOrder) {
 }
 
 TEST(Coupled, NothingIsAllocatedInAStep) {
-  for (const Integrator integrator :
-       {Integrator::variational, Integrator::variationalLeft, Integrator::rungeKutta4}) {
+  for (const Integrator integrator : {Integrator::variational, Integrator::variationalLeft,
+                                      Integrator::variationalAdaptive, Integrator::rungeKutta4}) {
     const Case c = liftingCase();
     const double step = integrator == Integrator::rungeKutta4 ? 1e-4 : 0.01;
     const auto count = [&](double duration) {

@@ -24,7 +24,7 @@ Deviation sd(const MusculoskeletalSystem& system, const Trajectory& motion,
 struct CompareOptions {
   std::vector<Integrator> integrators = {Integrator::rungeKutta4, Integrator::variational,
                                          Integrator::variationalLeft, Integrator::cvode};
-  /// [s] > 0, rising; cvode: intervals of the output
+  /// [s] > 0, rising; cvode: intervals of the output; vi-adaptive: these and the longest parts
   std::vector<double> steps = {0.0002, 0.0003, 0.0005, 0.0008, 0.001,
                                0.002,  0.005,  0.01,   0.02,   0.05};
   double startTime = 0;              ///< [s]
@@ -101,13 +101,13 @@ ObservedOrder fitOrder(const std::vector<double>& steps, const std::vector<doubl
 
 /// Steps over which an integrator's order is observed [s]: within its asymptotic range for motions
 /// of seconds, and integer fractions of 5 ms (vi: or integer multiples), so that the corners of
-/// recorded excitations lie on steps. Empty for cvode.
+/// recorded excitations lie on steps. Empty for those that choose their steps.
 std::vector<double> orderSteps(Integrator integrator);
 
 struct Comparison {
   ConvergedReference reference;
   std::vector<CompareCell> cells;     ///< by integrator, then by rising step
-  std::vector<StepLimit> limits;      ///< of rk4 and the variational integrators compared
+  std::vector<StepLimit> limits;      ///< of rk4, vi and vi-left as far as compared
   std::vector<ObservedOrder> orders;  ///< of the same
 };
 

@@ -68,7 +68,7 @@ class ExperimentDesign {
   /// @param setting    the model's values, catalogue.nominal() or another; made of the same model
   ///   as `system`
   /// @param groups muscle groups whose excitations are designed; may be empty
-  /// @param simulation integrator vi or vi-left; start time, duration, step
+  /// @param simulation integrator vi, vi-left or vi-adaptive; start time, duration, step
   /// @throws std::invalid_argument what ObservedMotion and DesignInputs throw, a number out of
   ///   range, nothing observed or twice the same, no parameter
   ExperimentDesign(const MusculoskeletalSystem& system, const ParameterCatalogue& catalogue,

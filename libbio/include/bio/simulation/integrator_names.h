@@ -7,7 +7,7 @@
 
 namespace bio {
 
-/// Names of integrators: "vi", "vi-left", "rk4", "cvode".
+/// Names of integrators: "vi", "vi-left", "vi-adaptive", "rk4", "cvode".
 const char* name(Integrator integrator);
 /// Empty for an unknown name.
 std::optional<Integrator> integratorNamed(const std::string& name);
