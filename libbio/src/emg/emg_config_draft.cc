@@ -78,7 +78,7 @@ std::vector<Channel> signalsIn(const Recording& recording) {
 }
 
 /// One line of the list of channels.
-std::string lineOf(const Channel& channel) {
+std::string channelLine(const Channel& channel) {
   double low = INFINITY, high = -INFINITY;
   bool hasGaps = false;
   for (const double value : channel.values) {
@@ -92,9 +92,9 @@ std::string lineOf(const Channel& channel) {
                      hasGaps ? ", with gaps" : "");
 }
 
-std::string listOf(const Recording& recording, const std::vector<Channel>& signals) {
+std::string channelList(const Recording& recording, const std::vector<Channel>& signals) {
   std::string text = fmt::format("# Channels of {}:\n", onOneLine(recording.file));
-  for (const Channel& channel : signals) text += lineOf(channel);
+  for (const Channel& channel : signals) text += channelLine(channel);
   const std::set<std::string> points = pointsIn(recording);
   if (!points.empty()) {
     text += fmt::format("# Points ([markers] in docs/emg.md): {}\n",
@@ -207,7 +207,7 @@ EmgConfigDraft draftEmgConfig(const std::vector<std::string>& recordings) {
     const Recording recording = readRecording(file);
     const std::vector<Channel> signals = signalsIn(recording);
     draft.channels += static_cast<int>(signals.size());
-    lists += listOf(recording, signals);
+    lists += channelList(recording, signals);
     for (const Channel& channel : signals) {
       all.push_back(channel);
       if (isElectrode(channel)) electrodes.push_back(channel);
