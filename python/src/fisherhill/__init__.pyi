@@ -1884,7 +1884,7 @@ class ConvergedReference:
 
 @type_check_only
 class IntegratorRun:
-    integrator: _Integrator
+    integrator: Literal["vi", "vi-left", "vi-adaptive", "rk4", "cvode"]
     step: float
     outcome: Literal["ok", "unstable", "no solution"]
     why: str
