@@ -97,7 +97,7 @@ class Predictions(Elbow):
             ({"weights": [np.full(451, np.nan)]}, "not finite"),
             ({"observe": ["BRA.tendon_force"], "weights": [np.zeros(451)]}, "BRA.tendon_force"),
             ({"observe": ["ghost"]}, "ghost"),
-            ({"integrator": "cvode"}, "must be vi or vi-left"),
+            ({"integrator": "cvode"}, "must be vi-adaptive, vi or vi-left"),
         ):
             with self.subTest(why), self.assertRaisesRegex(ValueError, why):
                 fh.predict(self.model, self.trials[:1], NAMES, **wrong)

@@ -63,7 +63,7 @@ class PassQuantiles {
     std::vector<std::uint32_t> bins = {};
     std::vector<double> values = {};  ///< where they are few: all of them
 
-    /// Of numbers, in a bin.
+    /// How many numbers a bin has.
     std::uint64_t width() const { return (high - low) / bins.size() + 1; }
   };
   struct Column {
