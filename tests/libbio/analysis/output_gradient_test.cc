@@ -45,7 +45,8 @@ TEST(OutputGradient, IsTheTransposedJacobianTimesTheWeights) {
   const CostGradient found = gradientOfOutputs(w.studied, w.question, w.theta, w.weights);
   const TrialPredictor::Linearised forward =
       predictorOf(w.studied, w.question).withSensitivities(w.theta);
-  EXPECT_NEAR(found.cost, w.weights.dot(forward.outputs), 1e-12 * w.weights.size());
+  EXPECT_NEAR(found.cost, w.weights.dot(forward.outputs),
+              1e-12 * static_cast<double>(w.weights.size()));
   const Eigen::VectorXd expected = forward.gamma.transpose() * w.weights;
   EXPECT_LT((found.gradient - expected).norm(), 1e-8 * expected.norm());
 }
