@@ -47,7 +47,7 @@ py::object writeEmgConfig(const Files& recordings, const FileName& file) {
   bio::EmgConfigDraft draft;
   interruptible([&](const std::atomic<bool>&) {
     draft = bio::draftEmgConfig(files);
-    bio::writeNewFile(draft.text, file.text);
+    bio::writeEmgConfig(draft, file.text);
   });
   return results("channels"_a = draft.channels, "electrodes"_a = draft.electrodes,
                  "is_complete"_a = draft.complete);

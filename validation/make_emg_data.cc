@@ -232,6 +232,11 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "make_emg_data MODEL.osim FOLDER [--damped] [--raw NAME] [--check]\n");
     return 2;
   }
+  const auto isNamed = [&](const validation::TrialPlan& plan) { return plan.name == raw; };
+  if (!raw.empty() && std::ranges::none_of(validation::trialPlans(), isNamed)) {
+    fmt::print(stderr, "make_emg_data: --raw {}: no trial has this name\n", raw);
+    return 2;
+  }
   try {
     return run({bio::readOsim(given[0]), given[1], std::ranges::count(given, "--check") > 0,
                 std::ranges::count(given, "--damped") > 0, raw});

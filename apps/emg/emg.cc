@@ -163,7 +163,7 @@ class Emg : public Command {
           "--write-config: writes this one file, --out and --figures must be left out");
     }
     const bio::EmgConfigDraft draft = bio::draftEmgConfig(recordings_);
-    bio::writeNewFile(draft.text, draft_);
+    bio::writeEmgConfig(draft, draft_);
     if (context.json) {
       const nlohmann::ordered_json found = {{"config", draft_},
                                             {"channels", draft.channels},

@@ -159,23 +159,38 @@ Json channelJson(const EnsembleFindings& f, std::size_t c) {
   return json;
 }
 
-/// What is counted or kept of a row in the first pass.
-void countRow(EnsembleFindings& f, const DrawTable::Row& row, bool decomposed) {
-  ++f.outcomes[row.outcome];
-  const std::size_t outputs = bio::ensembleOutputs().size();
-  for (std::size_t c = 0; c < f.channels.size(); ++c) {
-    const double* of = row.outputs.data() + c * outputs;
-    if (decomposed) f.channels[c].decomposed.push_back(of[bio::ensembleOutputNamed(f.output)]);
-    const bio::Observable& what = f.ensemble.channels()[c].what;
-    if (!what.isCoordinate()) continue;
-    const double factor = f.table.channels()[c].unit.factor;
-    const bio::Coordinate& coordinate = bio::findCoordinate(f.ensemble.model(), what.object);
-    if (bio::leavesRange(coordinate, of[bio::ensembleOutputNamed("min")] / factor,
-                         of[bio::ensembleOutputNamed("max")] / factor)) {
-      ++f.channels[c].leftRange;
+/// Counts, and keeps for Sobol's indices, what the first pass shows of every row.
+class RowCounts {
+ public:
+  RowCounts(EnsembleFindings& findings, bool decomposed)
+      : f_(findings), isDecomposed_(decomposed), output_(bio::ensembleOutputNamed(f_.output)) {
+    for (const bio::EnsembleChannel& channel : f_.ensemble.channels()) {
+      ranges_.push_back(channel.what.isCoordinate()
+                            ? &bio::findCoordinate(f_.ensemble.model(), channel.what.object)
+                            : nullptr);
     }
   }
-}
+
+  void add(const DrawTable::Row& row) {
+    ++f_.outcomes[row.outcome];
+    for (std::size_t c = 0; c < f_.channels.size(); ++c) {
+      const double* of = row.outputs.data() + c * bio::ensembleOutputs().size();
+      if (isDecomposed_) f_.channels[c].decomposed.push_back(of[output_]);
+      const double factor = f_.table.channels()[c].unit.factor;
+      if (ranges_[c] != nullptr &&
+          bio::leavesRange(*ranges_[c], of[min_] / factor, of[max_] / factor)) {
+        ++f_.channels[c].leftRange;
+      }
+    }
+  }
+
+ private:
+  EnsembleFindings& f_;
+  bool isDecomposed_;
+  std::size_t output_;
+  std::size_t min_ = bio::ensembleOutputNamed("min"), max_ = bio::ensembleOutputNamed("max");
+  std::vector<const bio::Coordinate*> ranges_;  ///< null for what is no coordinate
+};
 
 }  // namespace
 
@@ -186,11 +201,12 @@ void collect(EnsembleFindings& f, bool decomposed) {
   // per channel its outputs, then its course
   const std::size_t each = outputs + time.size();
   info::PassQuantiles columns = bio::spreadColumns(f.channels.size() * each);
+  RowCounts counts(f, decomposed);
   bool isFirst = true;
   do {
     for (std::uint64_t number = 0; number < f.ensemble.count(); ++number) {
       const DrawTable::Row row = f.row(number);
-      if (isFirst) countRow(f, row, decomposed);
+      if (isFirst) counts.add(row);
       for (std::size_t c = 0; c < f.channels.size(); ++c) {
         for (std::size_t i = 0; i < outputs; ++i)
           columns.add(c * each + i, row.outputs[c * outputs + i]);
@@ -199,7 +215,7 @@ void collect(EnsembleFindings& f, bool decomposed) {
       }
     }
     isFirst = false;
-  } while (columns.wantsAnotherPass());
+  } while (!columns.endPass());
   for (std::size_t c = 0; c < f.channels.size(); ++c) {
     for (std::size_t i = 0; i < outputs; ++i)
       f.channels[c].outputs.push_back(bio::spreadOf(columns, c * each + i));

@@ -4,9 +4,8 @@
     execute.py FOLDER
 
 They run in the top folder of the source tree, with the Python that runs this and the `fisherhill` that PYTHONPATH or an
-installation offers it. A cell
-that fails ends this with its message and status 1. Needs Debian's python3-nbclient, python3-nbconvert,
-python3-ipykernel and python3-matplotlib.
+installation offers it. A cell that fails ends this with its message and status 1. Needs Debian's python3-nbclient,
+python3-nbconvert, python3-ipykernel and python3-matplotlib.
 """
 
 import json

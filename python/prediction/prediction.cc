@@ -28,11 +28,14 @@ Predicted predicted(const Studies& studies, const Eigen::VectorXd& theta,
   if (weights) found.gradients.resize(count);
   info::parallelFor(static_cast<int>(count), threads, [&](int i) {
     const auto t = static_cast<std::size_t>(i);
-    const bio::TrialPredictor predictor = predictorOf(studies.trials[t], studies.question);
-    found.outputs[t] = predictor.outputs(theta);
-    if (!weights) return;
-    found.gradients[t] =
-        bio::gradientOfOutputs(studies.trials[t], studies.question, theta, (*weights)[t]);
+    const bio::StudiedTrial& trial = studies.trials[t];
+    if (!weights) {
+      found.outputs[t] = predictorOf(trial, studies.question).outputs(theta);
+      return;
+    }
+    bio::OutputGradient one = bio::gradientOfOutputs(trial, studies.question, theta, (*weights)[t]);
+    found.outputs[t] = std::move(one.outputs);
+    found.gradients[t] = std::move(one.sum);
   });
   return found;
 }

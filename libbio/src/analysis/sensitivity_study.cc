@@ -63,13 +63,20 @@ std::vector<ChannelCandidate> observedChannels(
   return channels;
 }
 
+std::vector<ObservedSeries> observedSeries(const StudiedTrial& trial,
+                                           const SensitivityQuestion& question) {
+  if (!question.observed.empty()) return seriesOf(question.observed, trial.times);
+  return seriesOf({{{Observable::Kind::coordinate, question.coordinate, 0}, question.noise}},
+                  trial.times);
+}
+
 TrialPredictor predictorOf(const StudiedTrial& trial, const SensitivityQuestion& question) {
   if (question.observed.empty()) {
     return {trial.catalogue, question.system,    trial.recorded.excitation, question.coordinate,
             trial.times,     question.selection, trial.recorded.simulation};
   }
   return {trial.catalogue,           question.system,
-          trial.recorded.excitation, seriesOf(question.observed, trial.times),
+          trial.recorded.excitation, observedSeries(trial, question),
           question.selection,        trial.recorded.simulation};
 }
 

@@ -12,6 +12,7 @@
 #include "bio/tables/file_error.h"
 #include "bio/tables/recording.h"
 #include "bio/tables/units.h"
+#include "tables/cells.h"
 #include "tables/recording_layouts.h"
 #include "tables/text_file.h"
 
@@ -38,11 +39,8 @@ std::string siUnitOf(const Channel& channel) {
 }
 
 bool isElectrode(const Channel& channel) {
-  std::string name = channel.name;
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return siUnitOf(channel) == "V" ||
-         (channel.unit.empty() && name.find("emg") != std::string::npos);
+         (channel.unit.empty() && tables::lowered(channel.name).find("emg") != std::string::npos);
 }
 
 /// "TRIlong_uV", "biceps [mV]": the channel's name without the unit.
@@ -105,9 +103,9 @@ std::string channelList(const Recording& recording, const std::vector<Channel>& 
 }
 
 /// A file without a header: what every column is has to be declared.
-std::string declarationsOf(const std::string& file, const std::string& table) {
+std::string declarationsOf(const std::vector<RawColumn>& columns, const std::string& table) {
   std::string text;
-  for (const RawColumn& column : readPlainColumns(file)) {
+  for (const RawColumn& column : columns) {
     text += fmt::format(
         "\n[[{}]]\ncolumn = {}              # {} numbers, {:.4g} to {:.4g}\nname = \"column{}\"\n"
         "# rate_Hz =             # needed: the file does not say\n"
@@ -198,10 +196,9 @@ EmgConfigDraft draftEmgConfig(const std::vector<std::string>& recordings) {
                            onOneLine(file), nameOf(format));
     if (format == RecordingFormat::columns) {
       hasHeaders = false;
-      const std::string declarations =
-          declarationsOf(file, i == 0 ? "channel" : "recording.channel");
-      draft.channels += static_cast<int>(readPlainColumns(file).size());
-      inputs += declarations;
+      const std::vector<RawColumn> columns = readPlainColumns(file);
+      draft.channels += static_cast<int>(columns.size());
+      inputs += declarationsOf(columns, i == 0 ? "channel" : "recording.channel");
       continue;
     }
     const Recording recording = readRecording(file);
@@ -224,12 +221,12 @@ EmgConfigDraft draftEmgConfig(const std::vector<std::string>& recordings) {
   return draft;
 }
 
-void writeNewFile(const std::string& text, const std::filesystem::path& file) {
+void writeEmgConfig(const EmgConfigDraft& draft, const std::filesystem::path& file) {
   std::error_code error;
   if (std::filesystem::exists(std::filesystem::symlink_status(file, error))) {
     throw FileError(fmt::format("{}: is there already and is not overwritten", file.string()));
   }
-  writeTextFile(file, text);
+  writeTextFile(file, draft.text);
 }
 
 }  // namespace bio

@@ -16,17 +16,22 @@ using Eigen::Index;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+std::vector<ObservedSeries> coordinateAt(const std::string& name,
+                                         const std::vector<double>& times) {
+  std::vector<ObservedSeries> series(1);
+  series.front().what.object = name;
+  series.front().times = Eigen::VectorXd::Map(times.data(), static_cast<Index>(times.size()));
+  return series;
+}
+
 }  // namespace
 
 TrialPredictor::TrialPredictor(const ParameterCatalogue& catalogue, const SystemOptions& system,
                                ExcitationSignal trial, const std::string& coordinate,
                                std::vector<double> times, std::vector<std::size_t> selection,
                                const SimulationOptions& options)
-    : TrialPredictor(
-          catalogue, system, std::move(trial),
-          {{{Observable::Kind::coordinate, coordinate, 0},
-            Eigen::Map<const Eigen::VectorXd>(times.data(), static_cast<Index>(times.size()))}},
-          std::move(selection), options) {
+    : TrialPredictor(catalogue, system, std::move(trial), coordinateAt(coordinate, times),
+                     std::move(selection), options) {
   const auto& free = system.skeleton.freeCoordinates;
   if (std::find(free.begin(), free.end(), coordinate) == free.end()) {
     throw std::invalid_argument(fmt::format("observed coordinate '{}' is not free", coordinate));

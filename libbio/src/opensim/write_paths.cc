@@ -85,7 +85,8 @@ void appendFunctionPath(const Writing& writing, Element& muscle, const PathFunct
   Element& element = append(muscle, "FunctionBasedPath", "path");
   std::string coordinates;
   for (const std::string& name : function.coordinates) {
-    coordinates += (coordinates.empty() ? "" : " ") + coordinatePath(writing.model, name);
+    if (!coordinates.empty()) coordinates += ' ';
+    coordinates += coordinatePath(writing.model, name);
   }
   appendText(element, "coordinate_paths", coordinates);
   Element& length = append(element, "length_function");

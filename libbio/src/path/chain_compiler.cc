@@ -268,32 +268,36 @@ class ChainCompiler {
       here.push_back(at(*posture));
       ends.push_back(chainEnds(size(), here.back().X_GC, here.back().P, here.back().Q));
     }
-    std::vector<Found> found(n);
-    std::vector<std::size_t> from(n, n);
-    std::vector<double> distance(n, std::numeric_limits<double>::infinity());
-    std::vector<bool> done(n, false), isKept(n, false);
+    struct Followed {
+      Found found = {};
+      const ChainMemory* from = nullptr;  ///< of the nearest posture with a path
+      double distance = std::numeric_limits<double>::infinity();  ///< to that posture
+      bool isDone = false, isKept = false;
+    };
+    std::vector<Followed> followed(n);
     for (std::size_t count = 0, next = first; count < n; ++count) {
-      done[next] = true;
-      const ChainMemory* known = from[next] < n ? &found[from[next]].memory : nullptr;
-      found[next] = decide(here[next], known);
-      isKept[next] = isFound(found[next]);
+      Followed& now = followed[next];
+      now.isDone = true;
+      now.found = decide(here[next], now.from);
+      now.isKept = isFound(now.found);
       ++result_.numPostures;
-      if (!isKept[next]) ++result_.numNotFound;
-      noteInside(found[next].taut);
+      if (!now.isKept) ++result_.numNotFound;
+      noteInside(now.found.taut);
       double nearest = std::numeric_limits<double>::infinity();
       std::size_t following = n;
       for (std::size_t i = 0; i < n; ++i) {
-        if (done[i]) continue;
+        Followed& other = followed[i];
+        if (other.isDone) continue;
         double d = 0;
         for (std::size_t k = 0; k < 6 * size(); ++k) {
           d += (ends[i][k] - ends[next][k]) * (ends[i][k] - ends[next][k]);
         }
-        if (isKept[next] && d < distance[i]) {
-          distance[i] = d;
-          from[i] = next;
+        if (now.isKept && d < other.distance) {
+          other.distance = d;
+          other.from = &now.found.memory;
         }
-        if (distance[i] <= nearest) {
-          nearest = distance[i];
+        if (other.distance <= nearest) {
+          nearest = other.distance;
           following = i;
         }
       }
@@ -304,9 +308,9 @@ class ChainCompiler {
     }
     std::vector<ChainStarts::Known> kept;
     for (std::size_t i = 0; i < n; ++i) {
-      if (isKept[i]) {
-        kept.push_back({here[i].X_GC, here[i].P, here[i].Q, found[i].taut, found[i].memory});
-      }
+      if (!followed[i].isKept) continue;
+      const Found& found = followed[i].found;
+      kept.push_back({here[i].X_GC, here[i].P, here[i].Q, found.taut, found.memory});
     }
     chain_.starts = std::make_shared<const ChainStarts>(size(), chain_.inOneSegment, kept);
   }

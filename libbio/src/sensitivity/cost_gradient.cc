@@ -54,7 +54,8 @@ CostGradient simulateWithGradient(const MusculoskeletalSystem& system,
   SimulationOptions own;
   const SimulationOptions& options = stepping::withOwnForces(system, given, own);
   if (!isVariational(options.integrator)) {
-    throw std::invalid_argument("gradient of a cost: integrator must be vi-adaptive, vi or vi-left");
+    throw std::invalid_argument(
+        "gradient of a cost: integrator must be vi-adaptive, vi or vi-left");
   }
   const ExcitationSignal driven = drivenExcitation(trial, muscleNames(system), setting.mapping);
   const SystemState start = startOf(system, setting, driven, options.startTime);

@@ -26,7 +26,7 @@ class VariationalStepper {
         configuration_(system),
         others_(system),
         symmetric_(isSymmetric(options.integrator)),
-        enough_(0.0075 * allowedError(options)),
+        enough_(negligible * allowedError(options)),
         rate_(system.numMuscles()),
         pieces_(system.numMuscles()),
         inverse_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.numMuscles()))),
@@ -309,6 +309,8 @@ class VariationalStepper {
   SystemConfiguration<N> configuration_;
   OtherForces<N> others_;
   bool symmetric_;
+  /// Of the error of a part, what Newton's method may leave; how little it matters: decision 092.
+  static constexpr double negligible = 0.0075;
   double enough_;  ///< 0, or what may be left of the unknowns [rad], [m] or ℓ0
   double contraction_ = std::numeric_limits<double>::infinity();
   std::vector<FibreRateDerivatives> rate_;

@@ -269,7 +269,7 @@ IdentifiabilityReport identifiability(const MatrixXd& information,
 
   setAccuracy(report, s);
   if (nullity == 0) {
-    report.sentences.push_back("all parameters are identifiable");
+    report.sentences.emplace_back("all parameters are identifiable");
     return report;
   }
   const MatrixXd null = reducedRows(report.eigenvectors.leftCols(nullity).transpose());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <stdexcept>
 
 #include "info/probability/quantile.h"
 
@@ -23,6 +24,10 @@ std::uint64_t orderOf(double x) {
 double numberAt(std::uint64_t order) {
   constexpr std::uint64_t sign = std::uint64_t{1} << 63;
   return std::bit_cast<double>((order & sign) != 0 ? order ^ sign : ~order);
+}
+
+[[noreturn]] void otherValues() {
+  throw std::logic_error("PassQuantiles: a pass had other values than the one before");
 }
 
 struct Place {
@@ -47,6 +52,7 @@ PassQuantiles::PassQuantiles(std::size_t columns, std::vector<double> shares)
 
 void PassQuantiles::add(std::size_t index, double x) {
   if (!std::isfinite(x)) return;
+  x += 0.0;  // −0 is 0: they are the same value, but not the same number
   Column& column = columns_[index];
   if (isFirst_) {
     if (column.count++ == 0) column.least = column.most = x;
@@ -60,7 +66,7 @@ void PassQuantiles::add(std::size_t index, double x) {
   }
   const std::uint64_t order = orderOf(x);
   for (Search& search : column.searches) {
-    if (search.isFound || order < search.low || order > search.high) continue;
+    if (search.isFound() || order < search.low || order > search.high) continue;
     if (search.bins.empty()) {
       search.values.push_back(x);
     } else {
@@ -77,46 +83,44 @@ void PassQuantiles::beginSearches(Column& column) const {
   }
   for (const std::uint64_t rank : ranks)
     column.searches.push_back({rank, orderOf(column.least), orderOf(column.most), column.count});
+  column.first = {};
 }
 
-void PassQuantiles::endPass(Search& s) const {
-  const std::uint64_t within = s.rank - s.below;
-  if (s.bins.empty()) {
-    const auto at = s.values.begin() + static_cast<std::ptrdiff_t>(within);
-    std::nth_element(s.values.begin(), at, s.values.end());
-    s.value = *at;
-    s.values = {};
-    s.isFound = true;
+void PassQuantiles::Search::narrow() {
+  const std::uint64_t within = rank - below;
+  if (bins.empty()) {
+    if (values.size() != inside) otherValues();
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(within);
+    std::nth_element(values.begin(), at, values.end());
+    low = high = orderOf(*at);
+    values = {};
     return;
   }
   std::size_t bin = 0;
   std::uint64_t before = 0;
-  while (before + s.bins[bin] <= within) before += s.bins[bin++];
-  const std::uint64_t width = s.width();
-  s.below += before;
-  s.inside = s.bins[bin];
-  s.low += bin * width;
-  s.high = std::min(s.high, s.low + (width - 1));
-  s.bins = {};
+  while (bin < bins.size() && before + bins[bin] <= within) before += bins[bin++];
+  if (bin == bins.size()) otherValues();
+  const std::uint64_t size = width();
+  below += before;
+  inside = bins[bin];
+  low += bin * size;
+  high = std::min(high, low + (size - 1));
+  bins = {};
 }
 
-bool PassQuantiles::wantsAnotherPass() {
-  bool wants = false;
+bool PassQuantiles::endPass() {
+  bool isLast = true;
   for (Column& column : columns_) {
     if (isFirst_ && column.count > kept()) beginSearches(column);
     for (Search& search : column.searches) {
-      if (!isFirst_ && !search.isFound) endPass(search);
-      if (search.low == search.high) {
-        search.value = numberAt(search.low);
-        search.isFound = true;
-      }
-      if (search.isFound) continue;
+      if (!isFirst_ && !search.isFound()) search.narrow();
+      if (search.isFound()) continue;
       if (search.inside > kept()) search.bins.assign(bins_, 0);
-      wants = true;
+      isLast = false;
     }
   }
   isFirst_ = false;
-  return wants;
+  return isLast;
 }
 
 double PassQuantiles::mean(std::size_t column) const {
@@ -128,17 +132,14 @@ double PassQuantiles::sd(std::size_t column) const {
   return c.count > 1 ? std::sqrt(c.squares / static_cast<double>(c.count - 1)) : none;
 }
 
-double PassQuantiles::orderStatistic(const Column& column, std::uint64_t rank) const {
-  const auto is = [&](const Search& search) { return search.rank == rank; };
-  return std::ranges::find_if(column.searches, is)->value;
-}
-
 double PassQuantiles::quantile(std::size_t index, std::size_t share) const {
   const Column& column = columns_[index];
   if (column.count <= kept()) return quantileOf(column.first, shares_[share]);
   const Place place = placeOf(column.count, shares_[share]);
-  return std::lerp(orderStatistic(column, place.below), orderStatistic(column, place.above),
-                   place.weight);
+  const auto at = [&](std::uint64_t rank) {
+    return numberAt(std::ranges::find(column.searches, rank, &Search::rank)->low);
+  };
+  return std::lerp(at(place.below), at(place.above), place.weight);
 }
 
 }  // namespace info

@@ -42,7 +42,8 @@ struct Weighted : ShippedElbow {
 
 TEST(OutputGradient, IsTheTransposedJacobianTimesTheWeights) {
   const Weighted w;
-  const CostGradient found = gradientOfOutputs(w.studied, w.question, w.theta, w.weights);
+  const auto [outputs, found] = gradientOfOutputs(w.studied, w.question, w.theta, w.weights);
+  EXPECT_EQ(outputs, predictorOf(w.studied, w.question).outputs(w.theta));
   const TrialPredictor::Linearised forward =
       predictorOf(w.studied, w.question).withSensitivities(w.theta);
   EXPECT_NEAR(found.cost, w.weights.dot(forward.outputs),
@@ -55,7 +56,7 @@ TEST(OutputGradient, TheCoordinateAloneIsObservedWithoutChannels) {
   Weighted w;
   w.question.observed.clear();
   const Eigen::VectorXd weights = w.weights.head(predictorOf(w.studied, w.question).size());
-  const CostGradient found = gradientOfOutputs(w.studied, w.question, w.theta, weights);
+  const CostGradient found = gradientOfOutputs(w.studied, w.question, w.theta, weights).sum;
   const TrialPredictor::Linearised forward =
       predictorOf(w.studied, w.question).withSensitivities(w.theta);
   const Eigen::VectorXd expected = forward.gamma.transpose() * weights;

@@ -101,11 +101,11 @@ TEST(EmgConfigDraft, NamesOfAnyKindAreQuoted) {
 TEST(EmgConfigDraft, AFileThatIsThereStays) {
   const ScratchFolder scratch;
   const std::string there = scratch.file("c.toml", "mine");
-  EXPECT_THROW(writeNewFile("other", there), FileError);
+  EXPECT_THROW(writeEmgConfig({"other"}, there), FileError);
   EXPECT_EQ(contentOfDraft(there), "mine");
   std::filesystem::create_symlink(scratch / "nothing", scratch / "link.toml");
-  EXPECT_THROW(writeNewFile("other", scratch / "link.toml"), FileError);
-  writeNewFile("new", scratch / "new.toml");
+  EXPECT_THROW(writeEmgConfig({"other"}, scratch / "link.toml"), FileError);
+  writeEmgConfig({"new"}, scratch / "new.toml");
   EXPECT_EQ(contentOfDraft(scratch / "new.toml"), "new");
   EXPECT_THROW(draftEmgConfig({}), std::invalid_argument);
   EXPECT_THROW(draftEmgConfig({(scratch / "none.csv").string()}), FileError);

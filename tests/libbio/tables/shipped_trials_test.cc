@@ -81,7 +81,7 @@ TEST(EmgData, IsSmall) {
        std::filesystem::recursive_directory_iterator(sourceTree + "/emg_data")) {
     if (entry.is_regular_file()) size += entry.file_size();
   }
-  EXPECT_LT(size, 2'500'000u);
+  EXPECT_LT(size, 2'400'000u);
 }
 
 }  // namespace

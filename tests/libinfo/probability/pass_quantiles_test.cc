@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <stdexcept>
 
 #include "info/probability/quantile.h"
 #include "info/probability/random_stream.h"
@@ -34,7 +35,7 @@ Passed passed(const std::vector<std::vector<double>>& columns) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       for (const double x : columns[c]) result.quantiles.add(c, x);
     }
-  } while (result.quantiles.wantsAnotherPass());
+  } while (!result.quantiles.endPass());
   return result;
 }
 
@@ -69,6 +70,11 @@ TEST(PassQuantiles, AreThoseOfTheSortedValues) {
   // two neighbouring numbers
   columns.push_back(valuesOf(
       count, [](RandomStream& s) { return s.uniform() < 0.5 ? 1 : std::nextafter(1, 2); }));
+  // two zeros, which are equal
+  columns.push_back(valuesOf(count, [](RandomStream& s) {
+    return s.uniform() < 0.5 ? 0.0 : s.uniform() < 0.8 ? -0.0 : s.normal();
+  }));
+  columns.push_back(valuesOf(count, [](RandomStream& s) { return s.uniform() < 0.5 ? 0 : -0.0; }));
   // a range that overflows
   columns.push_back(valuesOf(count, [](RandomStream& s) {
     return s.uniform() < 0.5 ? -1.7e308 * s.uniform() : 1.7e308 * s.uniform();
@@ -99,6 +105,15 @@ TEST(PassQuantiles, IgnoreWhatIsNotFinite) {
   EXPECT_TRUE(std::isnan(result.quantiles.mean(1)));
   EXPECT_TRUE(std::isnan(result.quantiles.quantile(1, 2)));
   EXPECT_TRUE(std::isnan(result.quantiles.sd(2)));
+}
+
+TEST(PassQuantiles, RefuseAPassOfOtherValues) {
+  const auto values = valuesOf(20000, [](RandomStream& s) { return s.normal(); });
+  PassQuantiles quantiles(1, shares);
+  for (const double x : values) quantiles.add(0, x);
+  ASSERT_FALSE(quantiles.endPass());
+  for (std::size_t i = 0; i < 100; ++i) quantiles.add(0, values[i]);
+  EXPECT_THROW(quantiles.endPass(), std::logic_error);
 }
 
 }  // namespace

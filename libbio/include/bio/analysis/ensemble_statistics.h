@@ -33,7 +33,7 @@ Spread spreadOf(const std::vector<double>& values);
 
 /// Percentiles of columns of any length, for spreadOf(columns, column).
 info::PassQuantiles spreadColumns(std::size_t columns);
-/// @param columns  of spreadColumns(), when no pass is wanted
+/// @param columns  of spreadColumns(), after the last pass
 Spread spreadOf(const info::PassQuantiles& columns, std::size_t column);
 
 /// Times of a percentile band: first and last of the trial, and between them equal distances [s].

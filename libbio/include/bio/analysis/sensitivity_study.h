@@ -53,7 +53,11 @@ struct SensitivityQuestion {
   std::vector<std::size_t> selection = {};      ///< of the first trial's catalogue
 };
 
-/// From parameters to what is measured of the trial: the coordinate, or channel after channel.
+/// What is measured of the trial: the coordinate, or channel after channel.
+std::vector<ObservedSeries> observedSeries(const StudiedTrial& trial,
+                                           const SensitivityQuestion& question);
+
+/// From parameters to what is measured of the trial.
 /// @throws std::invalid_argument what TrialPredictor throws
 TrialPredictor predictorOf(const StudiedTrial& trial, const SensitivityQuestion& question);
 std::vector<TrialPredictor> predictorsOf(const std::vector<StudiedTrial>& trials,

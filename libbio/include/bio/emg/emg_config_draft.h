@@ -24,6 +24,6 @@ EmgConfigDraft draftEmgConfig(const std::vector<std::string>& recordings);
 
 /// Writes the draft's text.
 /// @throws FileError if there is such a file already, or it cannot be written
-void writeNewFile(const std::string& text, const std::filesystem::path& file);
+void writeEmgConfig(const EmgConfigDraft& draft, const std::filesystem::path& file);
 
 }  // namespace bio

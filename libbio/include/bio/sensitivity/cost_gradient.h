@@ -41,8 +41,8 @@ struct CostGradient {
 /// @param system, catalogue, setting, wanted, trial  as for simulateWithSensitivities
 /// @param cost  smooth; called once with the motion. If the value is not finite, all derivatives
 ///   are NaN.
-/// @throws std::invalid_argument for an integrator other than the variational ones, slopes of another
-///   size than the motion's, and what simulate() throws; NoStaticEquilibrium
+/// @throws std::invalid_argument for an integrator other than the variational ones, slopes of
+///   another size than the motion's, and what simulate() throws; NoStaticEquilibrium
 CostGradient simulateWithGradient(const MusculoskeletalSystem& system,
                                   const ParameterCatalogue& catalogue,
                                   const ParameterCatalogue::Setting& setting,

@@ -12,7 +12,7 @@ namespace info {
 ///     PassQuantiles columns(2, {0.05, 0.5, 0.95});
 ///     do {
 ///       for (…) { columns.add(0, x); columns.add(1, y); }
-///     } while (columns.wantsAnotherPass());
+///     } while (!columns.endPass());
 ///     columns.quantile(0, 1);  // the median of the first column
 ///
 /// The first pass counts and keeps the first values of every column; where these are all, they are
@@ -36,8 +36,9 @@ class PassQuantiles {
   void add(std::size_t column, double value);
 
   /// Ends a pass.
-  /// @return whether the values are needed once more
-  bool wantsAnotherPass();
+  /// @return whether it was the last one; else the values are needed once more
+  /// @throws std::logic_error if the pass had other values than the one before
+  bool endPass();
 
   /// Number of finite values.
   std::uint64_t count(std::size_t column) const { return columns_[column].count; }
@@ -45,26 +46,27 @@ class PassQuantiles {
   double mean(std::size_t column) const;
   /// Sample standard deviation; NaN with fewer than two finite values.
   double sd(std::size_t column) const;
-  /// Linear between order statistics, as quantileOf(); NaN without a finite value. Valid once no
-  /// pass is wanted.
+  /// Linear between order statistics, as quantileOf(); NaN without a finite value. Valid after
+  /// the last pass.
   /// @param share  index of the probability
   double quantile(std::size_t column, std::size_t share) const;
 
  private:
   /// An order statistic that is looked for: it is one of the numbers from `low` to `high`, which
-  /// are counted from the least double on.
+  /// are counted from the least double on, and found where these are the same.
   struct Search {
     std::uint64_t rank;  ///< among all values, from 0
     std::uint64_t low, high;
     std::uint64_t inside;     ///< number of values there
     std::uint64_t below = 0;  ///< number of values below
-    bool isFound = false;
-    double value = 0;
     std::vector<std::uint32_t> bins = {};
     std::vector<double> values = {};  ///< where they are few: all of them
 
+    bool isFound() const { return low == high; }
     /// How many numbers a bin has.
     std::uint64_t width() const { return (high - low) / bins.size() + 1; }
+    /// Looks into what the pass has counted or kept.
+    void narrow();
   };
   struct Column {
     std::uint64_t count = 0;
@@ -75,8 +77,6 @@ class PassQuantiles {
   };
 
   void beginSearches(Column& column) const;
-  void endPass(Search& search) const;
-  double orderStatistic(const Column& column, std::uint64_t rank) const;
 
   std::vector<double> shares_;
   std::size_t bins_;
