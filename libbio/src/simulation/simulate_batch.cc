@@ -14,17 +14,17 @@ namespace {
 using lanes::HingeModel;
 using lanes::Lanes;
 using lanes::Single;
-using MakeSolver = lanes::LaneSolver* (*)(const lanes::LaneModel<Lanes>&);
+template <class Of>
+using MakeSolver = lanes::LaneSolver<Of>* (*)(const lanes::LaneModel<Of>&);
 
-MakeSolver solverFor(LaneInstructions instructions) {
-#ifdef FISHERHILL_WIDE_LANES
-  if (instructions == LaneInstructions::best && __builtin_cpu_supports("avx2")) {
-    return lanes::wideSolver;
-  }
-#endif
-  static_cast<void>(instructions);
-  return lanes::plainSolver;
-}
+/// One job, and what is shared by several.
+struct Member {
+  const LaneJob* job;
+  const HingeModel<Single>* system;
+  lanes::ActivationCourse* course;
+  Trajectory* result;
+  bool succeeded = false;
+};
 
 // Whether two laws have the same numbers.
 bool haveSameNumbers(const SchutteActivation<double>& a, const SchutteActivation<double>& b) {
@@ -89,22 +89,15 @@ class SharedCourse {
 };
 
 /// Jobs of one structure, to their ends: a lane whose job has ended takes the next one.
+template <class Of>
 class LaneGroup {
  public:
-  struct Member {
-    const LaneJob* job;
-    const HingeModel<Single>* system;
-    lanes::ActivationCourse* course;
-    Trajectory* result;
-    bool succeeded = false;
-  };
-
-  LaneGroup(std::vector<Member> members, const SimulationOptions& options)
-      : members_(std::move(members)),
+  LaneGroup(std::span<Member> members, const SimulationOptions& options)
+      : members_(members),
         options_(&options),
-        arms_(lanes::lanesFor(*members_.front().system)) {
+        arms_(lanes::lanesFor<Of>(*members_.front().system)) {
     // lanes without a job hold the first one's numbers
-    for (int l = 0; l < lanes::width; ++l) setLane(arms_, l, *members_.front().system);
+    for (int l = 0; l < Of::width; ++l) setLane(arms_, l, *members_.front().system);
     muscles_.resize(arms_.muscles.size());
     step_.muscles = muscles_.data();
     step_.newtonTolerance = options.newtonTolerance;
@@ -112,9 +105,9 @@ class LaneGroup {
     step_.symmetric = isSymmetric(options.integrator);
   }
 
-  void run(MakeSolver makeSolver) {
+  void run(MakeSolver<Of> makeSolver) {
     for (Lane& lane : lanes_) begin(lane);
-    std::unique_ptr<lanes::LaneSolver> solver;
+    std::unique_ptr<lanes::LaneSolver<Of>> solver;
     while (isWanted()) {
       if (armsChanged_) solver.reset(makeSolver(arms_.view()));
       armsChanged_ = false;
@@ -129,8 +122,6 @@ class LaneGroup {
       }
     }
   }
-
-  const std::vector<Member>& members() const { return members_; }
 
  private:
   struct Lane {
@@ -177,7 +168,7 @@ class LaneGroup {
 
   bool isWanted() const {
     bool wanted = false;
-    for (int l = 0; l < lanes::width; ++l) wanted = wanted || step_.wanted[l] != 0;
+    for (int l = 0; l < Of::width; ++l) wanted = wanted || step_.wanted[l] != 0;
     return wanted;
   }
 
@@ -188,21 +179,39 @@ class LaneGroup {
     step_.length[lane] = step_.length[from];
     step_.qEnd[lane] = step_.q[lane] = step_.q[from];
     step_.p[lane] = step_.p[from];
-    for (lanes::MuscleStep& m : muscles_) {
+    for (lanes::MuscleStep<Of>& m : muscles_) {
       m.fibreLengthEnd[lane] = m.fibreLength[lane] = m.fibreLength[from];
       m.activation[lane] = m.activation[from];
     }
   }
 
-  std::vector<Member> members_;
+  std::span<Member> members_;
   const SimulationOptions* options_;
   std::size_t next_ = 0;
-  HingeModel<Lanes> arms_;
+  HingeModel<Of> arms_;
   bool armsChanged_ = true;
-  std::array<Lane, lanes::width> lanes_;
-  std::vector<lanes::MuscleStep> muscles_;
-  lanes::LaneStep step_{};
+  std::array<Lane, Of::width> lanes_;
+  std::vector<lanes::MuscleStep<Of>> muscles_;
+  lanes::LaneStep<Of> step_{};
 };
+
+void advance(std::span<Member> members, const SimulationOptions& options,
+             LaneInstructions instructions) {
+#ifdef FISHERHILL_WIDE_LANES
+  using enum LaneInstructions;
+  // up to four jobs fill no more than half of eight lanes
+  if ((instructions == avx512 || (instructions == best && members.size() > 4)) &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) {
+    return LaneGroup<Lanes<8>>(members, options).run(lanes::avx512Solver);
+  }
+  if ((instructions == avx2 || instructions == best) && __builtin_cpu_supports("avx2")) {
+    return LaneGroup<Lanes<4>>(members, options).run(lanes::avx2Solver);
+  }
+#else
+  static_cast<void>(instructions);
+#endif
+  LaneGroup<Lanes<4>>(members, options).run(lanes::plainSolver);
+}
 
 }  // namespace
 
@@ -220,11 +229,10 @@ std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
     if (known && !stepping::changesForces(*jobs[i].system, options))
       arms[i] = lanes::hingeModel(*jobs[i].system);
   }
-  const MakeSolver makeSolver = solverFor(instructions);
   std::vector<std::unique_ptr<SharedCourse>> courses;
   for (std::size_t first = 0; first < jobs.size(); ++first) {
     if (!waiting[first] || !arms[first]) continue;
-    std::vector<LaneGroup::Member> members;
+    std::vector<Member> members;
     std::vector<std::size_t> places;
     for (std::size_t i = first; i < jobs.size(); ++i) {
       if (!waiting[i] || !arms[i] || !lanes::sameStructure(*arms[first], *arms[i])) continue;
@@ -234,11 +242,10 @@ std::vector<Trajectory> simulateTogether(std::span<const LaneJob> jobs,
       members.push_back({&jobs[i], &*arms[i], &courses.back()->course(), &results[i]});
       places.push_back(i);
     }
-    LaneGroup group(std::move(members), options);
-    group.run(makeSolver);
+    advance(members, options, instructions);
     for (std::size_t m = 0; m < places.size(); ++m) {
       waiting[places[m]] = false;
-      if (!group.members()[m].succeeded) arms[places[m]].reset();
+      if (!members[m].succeeded) arms[places[m]].reset();
     }
   }
   for (std::size_t i = 0; i < jobs.size(); ++i) {

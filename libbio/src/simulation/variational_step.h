@@ -309,7 +309,8 @@ class VariationalStepper {
   SystemConfiguration<N> configuration_;
   OtherForces<N> others_;
   bool symmetric_;
-  /// Of the error of a part, what Newton's method may leave; how little it matters: decision 092.
+  /// What Newton's method may leave, as a share of the error of a part; how little it matters:
+  /// decision 092.
   static constexpr double negligible = 0.0075;
   double enough_;  ///< 0, or what may be left of the unknowns [rad], [m] or ℓ0
   double contraction_ = std::numeric_limits<double>::infinity();

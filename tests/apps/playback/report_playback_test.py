@@ -45,7 +45,8 @@ def messages(browser):
 def plays(browser):
     told = browser.run(helpers + """const first = picture(), start = playback.player.time;
         playback.button.click();
-        await pause(600);
+        for (let tries = 0; tries < 200 && playback.player.time === start; ++tries) await pause(50);
+        await pause(100);
         playback.button.click();
         const then = playback.player.time, second = picture();
         await pause(200);

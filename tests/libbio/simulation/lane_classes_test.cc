@@ -196,13 +196,15 @@ TEST(LaneClasses, HalveStepsAsEachAloneWould) {
 TEST(LaneClasses, DependNeitherOnTheGroupNorOnTheProcessor) {
   for (const Kind& kind : kinds()) {
     SCOPED_TRACE(kind.name);
-    const DrawnOf drawn(kind.model, 0.05, 5, 1);
+    const DrawnOf drawn(kind.model, 0.05, 9, 1);
     const auto all = simulateTogether(drawn.jobs, drawn.options);
     const auto plain = simulateTogether(drawn.jobs, drawn.options, LaneInstructions::plain);
+    const auto avx2 = simulateTogether(drawn.jobs, drawn.options, LaneInstructions::avx2);
     std::vector<LaneJob> turned(drawn.jobs.rbegin(), drawn.jobs.rend());
     const auto other = simulateTogether(turned, drawn.options);
     for (std::size_t i = 0; i < all.size(); ++i) {
       expectSameMotion(all[i], plain[i]);
+      expectSameMotion(all[i], avx2[i]);
       expectSameMotion(all[i], other[all.size() - 1 - i]);
       expectSameMotion(all[i], simulateTogether({&drawn.jobs[i], 1}, drawn.options).front());
     }
@@ -217,7 +219,7 @@ double relative(double a, double b) {
 /// Of muscles side by side and of states all over their curves: the largest difference to the
 /// scalar law.
 double offFromScalar(const SimulatedMuscle* const (&of)[lanes::width], double slack) {
-  auto numbers = std::make_unique<lanes::LawNumbers>();
+  auto numbers = std::make_unique<lanes::LawNumbers<lanes::Here>>();
   lanes::gather(of, *numbers);
   lanes::AnyLaneMuscle law;
   law.set(*numbers);

@@ -149,10 +149,13 @@ TEST(SimulateTogether, DoesNotDependOnTheGroupToTheLastBit) {
 
 TEST(SimulateTogether, DoesNotDependOnTheProcessorToTheLastBit) {
   const ShippedElbow elbow;
-  const Drawn drawn(elbow, muscleNumbers, 0.05, 4, 1.2);
-  const auto best = simulateTogether(drawn.jobs, drawn.options);
+  const Drawn drawn(elbow, muscleNumbers, 0.05, 11, 1.2);
   const auto plain = simulateTogether(drawn.jobs, drawn.options, LaneInstructions::plain);
-  for (std::size_t i = 0; i < best.size(); ++i) expectSame(best[i], plain[i]);
+  for (const LaneInstructions instructions :
+       {LaneInstructions::avx2, LaneInstructions::avx512, LaneInstructions::best}) {
+    const auto other = simulateTogether(drawn.jobs, drawn.options, instructions);
+    for (std::size_t i = 0; i < plain.size(); ++i) expectSame(other[i], plain[i]);
+  }
 }
 
 // One whose steps are halved in the midst of others, and one that fails even so: the former moves
@@ -211,9 +214,9 @@ TEST(SimulateTogether, LeavesOtherIntegratorsAndArmsToSimulate) {
 void expectSamePaths(const MusculoskeletalSystem& system) {
   const auto single = lanes::hingeModel(system);
   ASSERT_TRUE(single);
-  lanes::HingeModel<lanes::Lanes> four = lanes::lanesFor(*single);
-  for (int l = 0; l < lanes::width; ++l) lanes::setLane(four, l, *single);
-  const auto view = four.view();
+  lanes::HingeModel<lanes::Here> all = lanes::lanesFor<lanes::Here>(*single);
+  for (int l = 0; l < lanes::width; ++l) lanes::setLane(all, l, *single);
+  const auto view = all.view();
   SystemConfiguration<1> configuration(system);
   for (int k = 0; k < 120; k += lanes::width) {
     lanes::Real q;

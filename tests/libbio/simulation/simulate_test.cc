@@ -256,7 +256,8 @@ TEST(SimulateTogether, AllocatesNothingInAStep) {
   const std::vector<LaneJob> jobs(3, {&elbow.system, &elbow.excitation, &start});
   SimulationOptions o;
   o.externalForce = ExternalForce({0.5, 1, 2}, Eigen::Vector3d(0, 0.8, -0.3));
-  for (const LaneInstructions instructions : {LaneInstructions::best, LaneInstructions::plain}) {
+  using enum LaneInstructions;
+  for (const LaneInstructions instructions : {avx512, avx2, plain}) {
     long switchesMet = 0;
     const auto count = [&](double duration) {
       o.duration = duration;

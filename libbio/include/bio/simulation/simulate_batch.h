@@ -16,12 +16,14 @@ struct LaneJob {
 
 /// The vector instructions that simulateTogether uses. All give bitwise the same results.
 enum class LaneInstructions {
-  best,   ///< the best that the processor supports
-  plain,  ///< those of every processor of the architecture
+  best,    ///< the best that the processor supports
+  avx512,  ///< AVX-512, where the processor supports it, else `plain`
+  avx2,    ///< AVX2, likewise
+  plain,   ///< those of every processor of the architecture
 };
 
-/// simulate(system, excitation, start, options) for each job, four at a time in SIMD registers, for
-/// models with one hinge that differ in numerical values only.
+/// simulate(system, excitation, start, options) for each job, four or eight at a time in SIMD
+/// registers, for models with one hinge that differ in numerical values only.
 ///
 /// The scheme is that of simulate() and its tolerances are the same; paths and gravity are taken at
 /// every iterate in closed form in sin q and cos q, where simulate() uses Taylor's polynomials for

@@ -122,27 +122,32 @@ class HingeCompiler {
 // Every number of a list's element into a lane
 // -----------------------------------------------------
 
-void put(LaneMuscle<Lanes>& to, int lane, const LaneMuscle<Single>& from) {
+template <class Of>
+void put(LaneMuscle<Of>& to, int lane, const LaneMuscle<Single>& from) {
   to.of[lane] = from.of[0];
   to.perFibre[lane] = from.perFibre;
 }
 
-void put(Condition<Lanes>& to, int lane, const Condition<Single>& from) {
+template <class Of>
+void put(Condition<Of>& to, int lane, const Condition<Single>& from) {
   to.lower[lane] = from.lower;
   to.upper[lane] = from.upper;
 }
 
-void put(Variant<Lanes>& to, int lane, const Variant<Single>& from) {
+template <class Of>
+void put(Variant<Of>& to, int lane, const Variant<Single>& from) {
   to.fixedLength[lane] = from.fixedLength;
 }
 
-void put(LaneSpan<Lanes>& to, int lane, const LaneSpan<Single>& from) {
+template <class Of>
+void put(LaneSpan<Of>& to, int lane, const LaneSpan<Single>& from) {
   to.constant[lane] = from.constant;
   to.cosine[lane] = from.cosine;
   to.sine[lane] = from.sine;
 }
 
-void put(Cylinder<Lanes>& to, int lane, const Cylinder<Single>& from) {
+template <class Of>
+void put(Cylinder<Of>& to, int lane, const Cylinder<Single>& from) {
   to.side[lane] = from.side;
   to.radius[lane] = from.radius;
   to.halfLength[lane] = from.halfLength;
@@ -194,11 +199,13 @@ bool sameStructure(const HingeModel<Single>& a, const HingeModel<Single>& b) {
          });
 }
 
-HingeModel<Lanes> lanesFor(const HingeModel<Single>& system) {
-  HingeModel<Lanes> lanes;
+template <class Of>
+HingeModel<Of> lanesFor(const HingeModel<Single>& system) {
+  const typename Of::Number none{};
+  HingeModel<Of> lanes;
   lanes.hasForces = system.hasForces;
   for (const LaneMuscle<Single>& m : system.muscles) {
-    LaneMuscle<Lanes> muscle{};
+    LaneMuscle<Of> muscle{};
     muscle.hasFibreState = m.hasFibreState;
     muscle.firstCondition = m.firstCondition;
     muscle.numConditions = m.numConditions;
@@ -207,13 +214,13 @@ HingeModel<Lanes> lanesFor(const HingeModel<Single>& system) {
   }
   lanes.conditions.resize(system.conditions.size());
   for (const Variant<Single>& v : system.variants) {
-    lanes.variants.push_back({Real{}, v.firstSpan, v.numSpans});
+    lanes.variants.push_back({none, v.firstSpan, v.numSpans});
   }
   for (const LaneSpan<Single>& s : system.spans) {
-    lanes.spans.push_back({Real{}, Real{}, Real{}, s.firstCylinder, s.numCylinders});
+    lanes.spans.push_back({none, none, none, s.firstCylinder, s.numCylinders});
   }
   for (const Cylinder<Single>& c : system.cylinders) {
-    Cylinder<Lanes> cylinder{};
+    Cylinder<Of> cylinder{};
     cylinder.surface = c.surface;
     cylinder.fixed[0] = c.fixed[0];
     cylinder.fixed[1] = c.fixed[1];
@@ -222,7 +229,8 @@ HingeModel<Lanes> lanesFor(const HingeModel<Single>& system) {
   return lanes;
 }
 
-void setLane(HingeModel<Lanes>& lanes, int lane, const HingeModel<Single>& system) {
+template <class Of>
+void setLane(HingeModel<Of>& lanes, int lane, const HingeModel<Single>& system) {
   putAll(lanes.muscles, lane, system.muscles);
   putAll(lanes.conditions, lane, system.conditions);
   putAll(lanes.variants, lane, system.variants);
@@ -233,5 +241,10 @@ void setLane(HingeModel<Lanes>& lanes, int lane, const HingeModel<Single>& syste
   lanes.gravitySine[lane] = system.gravitySine;
   lanes.forces[lane] = system.forces[0];
 }
+
+template HingeModel<Lanes<4>> lanesFor(const HingeModel<Single>&);
+template HingeModel<Lanes<8>> lanesFor(const HingeModel<Single>&);
+template void setLane(HingeModel<Lanes<4>>&, int, const HingeModel<Single>&);
+template void setLane(HingeModel<Lanes<8>>&, int, const HingeModel<Single>&);
 
 }  // namespace bio::lanes

@@ -19,7 +19,7 @@ struct HingeModel {
   std::vector<Cylinder<Of>> cylinders;
   T mass, gravityCosine, gravitySine;
   bool hasForces = false;
-  const CoordinateForces* forces[width] = {};
+  const CoordinateForces* forces[Of::width] = {};
 
   LaneModel<Of> view() {
     LaneModel<Of> system{static_cast<int>(muscles.size()),
@@ -33,7 +33,7 @@ struct HingeModel {
                          variants.data(),
                          spans.data(),
                          cylinders.data()};
-    for (int l = 0; l < width; ++l) system.forces[l] = forces[l];
+    for (int l = 0; l < Of::width; ++l) system.forces[l] = forces[l];
     return system;
   }
 };
@@ -48,10 +48,12 @@ std::optional<HingeModel<Single>> hingeModel(const MusculoskeletalSystem& system
 /// Whether two systems differ in numbers alone.
 bool sameStructure(const HingeModel<Single>& a, const HingeModel<Single>& b);
 
-/// Lists for systems of this structure; every lane must be set before use.
-HingeModel<Lanes> lanesFor(const HingeModel<Single>& system);
+/// Lists for systems of this structure, for four or eight lanes; every lane must be set before use.
+template <class Of>
+HingeModel<Of> lanesFor(const HingeModel<Single>& system);
 
 /// A system of the same structure into a lane.
-void setLane(HingeModel<Lanes>& lanes, int lane, const HingeModel<Single>& system);
+template <class Of>
+void setLane(HingeModel<Of>& lanes, int lane, const HingeModel<Single>& system);
 
 }  // namespace bio::lanes

@@ -17,9 +17,9 @@ namespace {
 class LaneCubic {
  public:
   LaneCubic() = default;
-  explicit LaneCubic(const CubicPiece& piece) : piece_(piece) {}
+  explicit LaneCubic(const CubicPiece<Here>& piece) : piece_(piece) {}
 
-  const CubicPiece& holding(const LaneNumber& x) const {
+  const CubicPiece<Here>& holding(const LaneNumber& x) const {
     if (!all((x.v >= piece_.lower) & (x.v < piece_.upper))) movePieces(piece_, x.v);
     return piece_;
   }
@@ -27,14 +27,14 @@ class LaneCubic {
   /// PiecewiseCubic::evaluate, of a muscle without pieces kept beside it
   struct Elsewhere {};
   muscles::CurvePoint<LaneNumber> evaluate(const LaneNumber& x, Elsewhere) const {
-    const CubicPiece& c = holding(x);
+    const CubicPiece<Here>& c = holding(x);
     const Real t = x.v - c.start;
     return {c.value + t * (c.slope + t * (c.quadratic + t * c.cubic)),
             c.slope + t * (2 * c.quadratic + t * 3 * c.cubic), 2 * c.quadratic + 6 * t * c.cubic};
   }
 
  private:
-  mutable CubicPiece piece_;
+  mutable CubicPiece<Here> piece_;
 };
 
 }  // namespace
@@ -49,10 +49,10 @@ class BezierCurve<lanes::LaneNumber, n> {
 
  public:
   BezierCurve() = default;
-  explicit BezierCurve(const lanes::BezierPiece<n>& piece) : piece_(piece) {}
+  explicit BezierCurve(const lanes::BezierPiece<lanes::Here, n>& piece) : piece_(piece) {}
 
   CurvePoint<N> evaluate(const N& x) const {
-    lanes::BezierPiece<n>& c = piece_;
+    lanes::BezierPiece<lanes::Here, n>& c = piece_;
     if (!lanes::all((x.v >= c.lower) & (x.v < c.upper))) lanes::movePieces(c, x.v);
     std::array<N, 6> place;
     std::array<lanes::LanePlane, 6> section;
@@ -68,7 +68,7 @@ class BezierCurve<lanes::LaneNumber, n> {
   }
 
  private:
-  mutable lanes::BezierPiece<n> piece_;
+  mutable lanes::BezierPiece<lanes::Here, n> piece_;
 };
 
 template <>
@@ -77,14 +77,14 @@ class MillardSpeed<lanes::LaneNumber> {
 
  public:
   MillardSpeed() = default;
-  explicit MillardSpeed(const lanes::LawNumbers& law)
+  explicit MillardSpeed(const lanes::LawNumbers<lanes::Here>& law)
       : piece_(law.speed),
         first_{law.firstSpeed.x, law.firstSpeed.y, law.firstSpeed.slope},
         last_{law.lastSpeed.x, law.lastSpeed.y, law.lastSpeed.slope} {}
 
   FibreSpeed<N> solve(const BezierCurve<N, 4>&, const N& B, const N& P, const N& A) const {
     const auto sum = [&](const N& y, const N& x) { return A * y + B * x; };
-    lanes::SpeedPiece& c = piece_;
+    lanes::SpeedPiece<lanes::Here>& c = piece_;
     const lanes::LaneMask below = !(P > sum(c.beginY, c.beginX));
     const lanes::LaneMask outside = below || !(P < sum(c.endY, c.endX));
     return branch(
@@ -109,7 +109,7 @@ class MillardSpeed<lanes::LaneNumber> {
   struct Line {
     N x, y, slope;
   };
-  mutable lanes::SpeedPiece piece_;
+  mutable lanes::SpeedPiece<lanes::Here> piece_;
   Line first_, last_;
 };
 

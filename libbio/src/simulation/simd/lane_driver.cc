@@ -60,7 +60,8 @@ LaneDriver::LaneDriver(const MusculoskeletalSystem& system, const ExcitationSign
   recorder_.add(options.startTime, start.q, start.qDot, activation_, fibre_, 0, 0, 0);
 }
 
-bool LaneDriver::ask(int lane, LaneStep& step) {
+template <class Of>
+bool LaneDriver::ask(int lane, LaneStep<Of>& step) {
   if (phase_ == Phase::finished || phase_ == Phase::failed) return false;
   if (phase_ == Phase::wholeStep && !fromRest_) shortenAfterJump();
   if (phase_ != Phase::meetSwitch) t1_ = targets_.back().time;
@@ -78,7 +79,7 @@ bool LaneDriver::ask(int lane, LaneStep& step) {
   step.p[lane] = p_;
   step.qEnd[lane] = q_ + now * velocity_ - before * velocityBefore_;
   for (Index i = 0; i < fibre_.size(); ++i) {
-    MuscleStep& muscle = step.muscles[i];
+    MuscleStep<Of>& muscle = step.muscles[i];
     muscle.fibreLength[lane] = fibre_[i];
     muscle.fibreLengthEnd[lane] =
         fibre_[i] + now * fibreVelocity_[i] - before * fibreVelocityBefore_[i];
@@ -105,7 +106,8 @@ void LaneDriver::chooseActivation() {
   player_.advance(half, t1_, activation_);
 }
 
-void LaneDriver::take(int lane, const LaneStep& step) {
+template <class Of>
+void LaneDriver::take(int lane, const LaneStep<Of>& step) {
   recorder_.trajectory().newtonIterations += step.iterations[lane];
   constexpr double furthest = 1e5;  // of what sines are accurate for [rad]
   if (step.converged[lane] == 0) {
@@ -123,7 +125,10 @@ void LaneDriver::take(int lane, const LaneStep& step) {
   works_[0] = step.muscleWork[lane];
   works_[1] = step.passiveWork[lane];
   works_[2] = step.externalWork[lane];
+  takeEnd();
+}
 
+void LaneDriver::takeEnd() {
   if (phase_ == Phase::wholeStep && search_.begin(system_->switches(), &q_, &qEnd_)) {
     meetSwitch();
     return;
@@ -248,5 +253,10 @@ void LaneDriver::accept(bool endsTarget) {
     phase_ = Phase::finished;
   }
 }
+
+template bool LaneDriver::ask(int, LaneStep<Lanes<4>>&);
+template bool LaneDriver::ask(int, LaneStep<Lanes<8>>&);
+template void LaneDriver::take(int, const LaneStep<Lanes<4>>&);
+template void LaneDriver::take(int, const LaneStep<Lanes<8>>&);
 
 }  // namespace bio::lanes

@@ -52,9 +52,11 @@ class LaneDriver {
              double mass);
 
   /// Writes the next step into a lane; false if there is none.
-  bool ask(int lane, LaneStep& step);
+  template <class Of>
+  bool ask(int lane, LaneStep<Of>& step);
   /// Takes the end of the step asked for.
-  void take(int lane, const LaneStep& step);
+  template <class Of>
+  void take(int lane, const LaneStep<Of>& step);
 
   /// False: the lanes cannot do it, the motion is not to be used.
   bool succeeded() const { return phase_ == Phase::finished; }
@@ -73,6 +75,7 @@ class LaneDriver {
     double time;  ///< [s]
     int halvings;
   };
+  void takeEnd();
   void chooseActivation();
   void shortenAfterJump();
   void noteJump();

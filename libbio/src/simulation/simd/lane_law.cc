@@ -23,18 +23,20 @@ void holdNothing(Piece& piece, int lane) {
   piece.lower[lane] = piece.upper[lane] = std::numeric_limits<double>::quiet_NaN();
 }
 
-void gatherCubic(const PiecewiseCubic& curve, int lane, CubicPiece& piece) {
+template <class Of>
+void gatherCubic(const PiecewiseCubic& curve, int lane, CubicPiece<Of>& piece) {
   holdNothing(piece, lane);
   piece.of[lane] = &curve;
 }
 
-template <std::size_t n>
-void gatherBezier(const muscles::BezierCurve<double, n>& curve, int lane, BezierPiece<n>& piece) {
+template <class Of, std::size_t n>
+void gatherBezier(const muscles::BezierCurve<double, n>& curve, int lane,
+                  BezierPiece<Of, n>& piece) {
   holdNothing(piece, lane);
   piece.of[lane] = &curve;
 }
 
-template <std::size_t n>
+template <class Real, std::size_t n>
 void putPlane(const muscles::BezierCurve<double, n>& curve, std::size_t section, int lane,
               Real (&x)[6], Real (&y)[6]) {
   const muscles::PlaneQuintic& plane = curve.plane(section);
@@ -44,7 +46,8 @@ void putPlane(const muscles::BezierCurve<double, n>& curve, std::size_t section,
   }
 }
 
-void putCell(const muscles::MillardSpeed<double>::Cell& place, int lane, SpeedPiece& piece) {
+template <class Of>
+void putCell(const muscles::MillardSpeed<double>::Cell& place, int lane, SpeedPiece<Of>& piece) {
   const muscles::SpeedCell<double> cell = piece.of[lane]->at(place);
   piece.lowX[lane] = cell.lowX;
   piece.lowY[lane] = cell.lowY;
@@ -59,7 +62,8 @@ void putCell(const muscles::MillardSpeed<double>::Cell& place, int lane, SpeedPi
   putPlane(*piece.curve[lane], place.section, lane, piece.x, piece.y);
 }
 
-void gatherSchutte(const SchutteMuscle<double>& m, int lane, LawNumbers& law) {
+template <class Of>
+void gatherSchutte(const SchutteMuscle<double>& m, int lane, LawNumbers<Of>& law) {
   law.law = LaneClass::schutte;
   law.ignoresTendonCompliance = false;
   law.clampsForce = m.options().clampForce;
@@ -77,34 +81,38 @@ void gatherSchutte(const SchutteMuscle<double>& m, int lane, LawNumbers& law) {
   if (law.hasPassiveCurve) gatherCubic(*m.curves().passiveForce, lane, law.cubics[2]);
 }
 
-void gatherOwn(const Thelen2003<double>&, int, LawNumbers& law) {
+template <class Of>
+void gatherOwn(const Thelen2003<double>&, int, LawNumbers<Of>& law) {
   law.law = LaneClass::thelen;
 }
-void gatherOwn(const DeGrooteFregly2016<double>& shape, int, LawNumbers& law) {
+template <class Of>
+void gatherOwn(const DeGrooteFregly2016<double>& shape, int, LawNumbers<Of>& law) {
   law.law = LaneClass::deGroote;
   law.ignoresPassiveForce = shape.parameters().ignorePassiveFibreForce;
 }
-void gatherOwn(const RigidTendon<double>& shape, int lane, LawNumbers& law) {
+template <class Of>
+void gatherOwn(const RigidTendon<double>& shape, int lane, LawNumbers<Of>& law) {
   law.law = LaneClass::rigidTendon;
   gatherCubic(shape.activeSpline(), lane, law.cubics[0]);
   gatherCubic(shape.passiveSpline(), lane, law.cubics[1]);
   gatherCubic(shape.velocitySpline(), lane, law.cubics[2]);
 }
-void gatherOwn(const Millard2012<double>& shape, int lane, LawNumbers& law) {
+template <class Of>
+void gatherOwn(const Millard2012<double>& shape, int lane, LawNumbers<Of>& law) {
   law.law = LaneClass::millard;
   law.damping[lane] = shape.damping();
   gatherBezier(shape.tendonCurve(), lane, law.tendon);
   gatherBezier(shape.activeCurve(), lane, law.active);
   gatherBezier(shape.passiveCurve(), lane, law.passive);
   gatherBezier(shape.forceVelocityCurve(), lane, law.forceVelocity);
-  const auto putLine = [lane](LineNumbers& to, const auto& end) {
+  const auto putLine = [lane](LineNumbers<Of>& to, const auto& end) {
     to.x[lane] = end.x;
     to.y[lane] = end.y;
     to.slope[lane] = end.slope;
   };
   putLine(law.firstSpeed, shape.forceVelocityCurve().first());
   putLine(law.lastSpeed, shape.forceVelocityCurve().last());
-  SpeedPiece& speed = law.speed;
+  SpeedPiece<Of>& speed = law.speed;
   speed.curve[lane] = &shape.forceVelocityCurve();
   speed.of[lane] = &shape.speedSolver();
   using Speed = muscles::MillardSpeed<double>;
@@ -116,8 +124,8 @@ void gatherOwn(const Millard2012<double>& shape, int lane, LawNumbers& law) {
   speed.beginY[lane] = speed.lowY[lane];
 }
 
-template <class Shape>
-void gatherHill(const HillMuscle<Shape>& muscle, int lane, LawNumbers& law) {
+template <class Of, class Shape>
+void gatherHill(const HillMuscle<Shape>& muscle, int lane, LawNumbers<Of>& law) {
   using Parameters = typename Shape::Parameters;
   static_assert(Parameters::count <= mostLawNumbers);
   const Parameters& p = muscle.parameters();
@@ -145,8 +153,9 @@ bool sameForm(const SimulatedMuscle& a, const SimulatedMuscle& b) {
   return !x || x->parameters().ignorePassiveFibreForce == y->parameters().ignorePassiveFibreForce;
 }
 
-void gather(const SimulatedMuscle* const (&of)[width], LawNumbers& law) {
-  for (int lane = 0; lane < width; ++lane) {
+template <class Of>
+void gather(const SimulatedMuscle* const (&of)[Of::width], LawNumbers<Of>& law) {
+  for (int lane = 0; lane < Of::width; ++lane) {
     if (of[lane]->ifSchutte()) {
       gatherSchutte(of[lane]->schutte(), lane, law);
     } else {
@@ -155,8 +164,9 @@ void gather(const SimulatedMuscle* const (&of)[width], LawNumbers& law) {
   }
 }
 
-void movePieces(CubicPiece& curve, const Real& x) {
-  for (int l = 0; l < width; ++l) {
+template <class Of>
+void movePieces(CubicPiece<Of>& curve, const typename Of::Number& x) {
+  for (int l = 0; l < Of::width; ++l) {
     if (x[l] >= curve.lower[l] && x[l] < curve.upper[l]) continue;
     const PiecewiseCubic::Piece piece = curve.of[l]->pieceAt(x[l]);
     curve.lower[l] = piece.lower;
@@ -169,9 +179,9 @@ void movePieces(CubicPiece& curve, const Real& x) {
   }
 }
 
-template <std::size_t n>
-void movePieces(BezierPiece<n>& piece, const Real& x) {
-  for (int l = 0; l < width; ++l) {
+template <class Of, std::size_t n>
+void movePieces(BezierPiece<Of, n>& piece, const typename Of::Number& x) {
+  for (int l = 0; l < Of::width; ++l) {
     if (x[l] >= piece.lower[l] && x[l] < piece.upper[l]) continue;
     const muscles::BezierCurve<double, n>& curve = *piece.of[l];
     // straight lines hold their ends
@@ -200,26 +210,49 @@ void movePieces(BezierPiece<n>& piece, const Real& x) {
   }
 }
 
-void movePieces(SpeedPiece& piece, const Mask& wanted, const Real& P, const Real& A,
-                const Real& B) {
-  for (int l = 0; l < width; ++l) {
+template <class Of>
+void movePieces(SpeedPiece<Of>& piece, const typename Of::Mask& wanted,
+                const typename Of::Number& P, const typename Of::Number& A,
+                const typename Of::Number& B) {
+  for (int l = 0; l < Of::width; ++l) {
     if (wanted[l] != 0) putCell(piece.of[l]->cellAt(P[l], A[l], B[l]), l, piece);
   }
 }
 
-template <std::size_t n>
-void refinePlaces(const BezierPiece<n>& piece, const Real& x, Real& u) {
-  for (int l = 0; l < width; ++l) {
+template <class Of, std::size_t n>
+void refinePlaces(const BezierPiece<Of, n>& piece, const typename Of::Number& x,
+                  typename Of::Number& u) {
+  for (int l = 0; l < Of::width; ++l) {
     const muscles::BezierCurve<double, n>& curve = *piece.of[l];
     if (curve.isInside(x[l])) u[l] = curve.placeIn(curve.sectionAt(x[l]), x[l]);
   }
 }
 
-template void movePieces(BezierPiece<2>&, const Real&);
-template void movePieces(BezierPiece<4>&, const Real&);
-template void movePieces(BezierPiece<5>&, const Real&);
-template void refinePlaces(const BezierPiece<2>&, const Real&, Real&);
-template void refinePlaces(const BezierPiece<4>&, const Real&, Real&);
-template void refinePlaces(const BezierPiece<5>&, const Real&, Real&);
+template void gather(const SimulatedMuscle* const (&)[4], LawNumbers<Lanes<4>>&);
+template void movePieces(CubicPiece<Lanes<4>>&, const Lanes<4>::Number&);
+template void movePieces(SpeedPiece<Lanes<4>>&, const Lanes<4>::Mask&, const Lanes<4>::Number&,
+                         const Lanes<4>::Number&, const Lanes<4>::Number&);
+template void movePieces(BezierPiece<Lanes<4>, 2>&, const Lanes<4>::Number&);
+template void refinePlaces(const BezierPiece<Lanes<4>, 2>&, const Lanes<4>::Number&,
+                           Lanes<4>::Number&);
+template void movePieces(BezierPiece<Lanes<4>, 4>&, const Lanes<4>::Number&);
+template void refinePlaces(const BezierPiece<Lanes<4>, 4>&, const Lanes<4>::Number&,
+                           Lanes<4>::Number&);
+template void movePieces(BezierPiece<Lanes<4>, 5>&, const Lanes<4>::Number&);
+template void refinePlaces(const BezierPiece<Lanes<4>, 5>&, const Lanes<4>::Number&,
+                           Lanes<4>::Number&);
+template void gather(const SimulatedMuscle* const (&)[8], LawNumbers<Lanes<8>>&);
+template void movePieces(CubicPiece<Lanes<8>>&, const Lanes<8>::Number&);
+template void movePieces(SpeedPiece<Lanes<8>>&, const Lanes<8>::Mask&, const Lanes<8>::Number&,
+                         const Lanes<8>::Number&, const Lanes<8>::Number&);
+template void movePieces(BezierPiece<Lanes<8>, 2>&, const Lanes<8>::Number&);
+template void refinePlaces(const BezierPiece<Lanes<8>, 2>&, const Lanes<8>::Number&,
+                           Lanes<8>::Number&);
+template void movePieces(BezierPiece<Lanes<8>, 4>&, const Lanes<8>::Number&);
+template void refinePlaces(const BezierPiece<Lanes<8>, 4>&, const Lanes<8>::Number&,
+                           Lanes<8>::Number&);
+template void movePieces(BezierPiece<Lanes<8>, 5>&, const Lanes<8>::Number&);
+template void refinePlaces(const BezierPiece<Lanes<8>, 5>&, const Lanes<8>::Number&,
+                           Lanes<8>::Number&);
 
 }  // namespace bio::lanes

@@ -1,7 +1,8 @@
 #pragma once
 
-// What the step of lane_step.h works on: systems with one hinge and the same structure, their numbers
-// side by side. Plain data and pointers, so that files of several instruction sets can read it.
+// What the step of lane_step.h works on: systems with one hinge and the same structure, their
+// numbers side by side. Plain data and pointers, so that files of several instruction sets can read
+// it.
 
 #include "simulation/simd/lane_real.h"
 
@@ -60,7 +61,7 @@ struct Condition {
 template <class Of>
 struct LaneMuscle {
   using T = typename Of::Number;
-  const SimulatedMuscle* of[width];  ///< its law (lane_law.h)
+  const SimulatedMuscle* of[Of::width];  ///< its law (lane_law.h)
   bool hasFibreState;
   T perFibre;  ///< 1/ℓ0 [1/m]
   int firstCondition, numConditions;
@@ -74,7 +75,7 @@ struct LaneModel {
   T mass;                        ///< M [kg m²]
   T gravityCosine, gravitySine;  ///< V = gravityCosine·cos q + gravitySine·sin q [J]
   bool hasForces;                ///< passive ones of the coordinate
-  const CoordinateForces* forces[width];
+  const CoordinateForces* forces[Of::width];
   LaneMuscle<Of>* muscles;
   const Condition<Of>* conditions;
   const Variant<Of>* variants;
@@ -86,7 +87,9 @@ struct LaneModel {
 inline constexpr int maxCylinders = 8;
 
 /// A step of one muscle.
+template <class Of>
 struct MuscleStep {
+  using Real = typename Of::Number;
   // given
   Real fibreLength;     ///< at the begin [m]
   Real activation;      ///< at the middle of the step
@@ -98,7 +101,10 @@ struct MuscleStep {
 };
 
 /// A step of every lane: what is given, what comes out.
+template <class Of>
 struct LaneStep {
+  using Real = typename Of::Number;
+  using Mask = typename Of::Mask;
   // given
   Mask wanted;    ///< stays so until it is done
   Real length;    ///< h [s]
@@ -110,7 +116,7 @@ struct LaneStep {
   // the first guess, then the end; garbage where it did not converge
   Real qEnd;
   // of the iteration, before its first 0, 0 and NaN
-  int iterations[width];
+  int iterations[Of::width];
   Real previous;  ///< largest correction of the one before
   Real place;     ///< q where paths' conditions were last looked at
   // out
@@ -118,37 +124,43 @@ struct LaneStep {
   Mask converged;
   Real pEnd;
   Real muscleWork, passiveWork, externalWork;  ///< [J]
-  MuscleStep* muscles;                         ///< all of the system
+  MuscleStep<Of>* muscles;                     ///< all of the system
 };
 
 /// The solver of steps of some systems.
+template <class Of>
 class LaneSolver {
  public:
   LaneSolver() = default;
-  virtual ~LaneSolver();
+  virtual ~LaneSolver() = default;
   LaneSolver(const LaneSolver&) = delete;
   LaneSolver& operator=(const LaneSolver&) = delete;
   /// Newton's iteration of VariationalStepper for every lane that is wanted, until one of them is
   /// done; the others go on in the next call.
-  virtual void solve(LaneStep& step) = 0;
+  virtual void solve(LaneStep<Of>& step) = 0;
 };
 /// Made with `new`; what the model points to must outlive it. One per instruction set, all with the
 /// same results: they round alike, since nothing is fused.
-LaneSolver* plainSolver(const LaneModel<Lanes>& system);
-LaneSolver* wideSolver(const LaneModel<Lanes>& system);
+LaneSolver<Lanes<4>>* plainSolver(const LaneModel<Lanes<4>>& system);
+LaneSolver<Lanes<4>>* avx2Solver(const LaneModel<Lanes<4>>& system);
+LaneSolver<Lanes<8>>* avx512Solver(const LaneModel<Lanes<8>>& system);
 
-// What the step asks for rarely
+// What the step asks for rarely; for four and eight lanes
 // -----------------------------------------
 
 /// Whether the way between the ends over a cylinder of finite length touches it within its ends.
-bool touchesWithin(const Cylinder<Lanes>& cylinder, const Real (&P)[3], const Real (&Q)[3],
-                   int lane);
+template <class Of>
+bool touchesWithin(const Cylinder<Of>& cylinder, const typename Of::Number (&P)[3],
+                   const typename Of::Number (&Q)[3], int lane);
 
 /// Force, ∂/∂q and ∂/∂q̇ of the passive coordinate forces in the lanes asked for, else 0.
+template <class Of>
 struct PassiveForce {
-  Real force, dForce_dq, dForce_dqDot;
+  typename Of::Number force, dForce_dq, dForce_dqDot;
 };
-void passiveForce(const LaneModel<Lanes>& system, const Mask& lanes, const Real& q,
-                  const Real& qDot, PassiveForce& out);
+template <class Of>
+void passiveForce(const LaneModel<Of>& system, const typename Of::Mask& lanes,
+                  const typename Of::Number& q, const typename Of::Number& qDot,
+                  PassiveForce<Of>& out);
 
 }  // namespace bio::lanes

@@ -43,7 +43,7 @@ class LaneSchutte {
     LaneCubic::Elsewhere tendonForce, activeForce, passiveForce;
   };
 
-  explicit LaneSchutte(const LawNumbers& law)
+  explicit LaneSchutte(const LawNumbers<Here>& law)
       : perFibre_(law.numbers[1]),
         perTendon_(law.numbers[2]),
         speedScale_(law.numbers[3]),
@@ -73,7 +73,7 @@ class LaneSchutte {
 };
 
 template <class Shape>
-muscles::HillMuscle<Shape> hillMuscle(const LawNumbers& law) {
+muscles::HillMuscle<Shape> hillMuscle(const LawNumbers<Here>& law) {
   using Parameters = typename Shape::Parameters;
   Parameters p;
   for (std::size_t i = 0; i < Parameters::count; ++i) Parameters::at(p, i) = law.numbers[i];
@@ -144,7 +144,7 @@ class AnyLaneMuscle {
     if (law_) visit([](auto& muscle) { delete &muscle; });
   }
 
-  void set(const LawNumbers& law) {
+  void set(const LawNumbers<Here>& law) {
     class_ = law.law;
     switch (class_) {
       case LaneClass::schutte:

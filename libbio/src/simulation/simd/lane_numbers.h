@@ -10,6 +10,17 @@ namespace bio::lanes {
 
 namespace {
 
+// How many the file that includes this advances together.
+#ifndef FISHERHILL_LANES
+#define FISHERHILL_LANES 4
+#endif
+using Here = Lanes<FISHERHILL_LANES>;
+using Real [[gnu::aligned(sizeof(Here::Number))]] = Here::Number;
+using Mask [[gnu::aligned(sizeof(Here::Number))]] = Here::Mask;
+inline constexpr int width = Here::width;
+static_assert(width == 4 || width == 8);
+static_assert(alignof(Real) == sizeof(Real) && alignof(Mask) == sizeof(Mask));
+
 inline Real same(double x) {
   Real r;
   for (int l = 0; l < width; ++l) r[l] = x;
@@ -18,9 +29,12 @@ inline Real same(double x) {
 
 /// Its lanes as bits.
 inline int bitsOf(const Mask& m) {
-#if defined __AVX__
+#if FISHERHILL_LANES == 8 && defined __AVX512DQ__
+  using Whole [[gnu::vector_size(64)]] = long long;
+  return static_cast<unsigned char>(__builtin_ia32_cvtq2mask512(reinterpret_cast<Whole>(m)));
+#elif FISHERHILL_LANES == 4 && defined __AVX__
   return __builtin_ia32_movmskpd256(reinterpret_cast<Real>(m));
-#elif defined __SSE2__
+#elif FISHERHILL_LANES == 4 && defined __SSE2__
   const Real r = reinterpret_cast<Real>(m);
   return __builtin_ia32_movmskpd(__builtin_shufflevector(r, r, 0, 1)) |
          __builtin_ia32_movmskpd(__builtin_shufflevector(r, r, 2, 3)) << 2;

@@ -14,7 +14,7 @@ struct PathJet {
 
 /// L = √(k₀ + k₁ cos q + k₂ sin q):  L′ = (k₂ cos q − k₁ sin q)/2L,
 /// L″ = (−(k₁ cos q + k₂ sin q)/2 − L′²)/L
-inline void addStraight(PathJet& jet, const LaneSpan<Lanes>& span, const SineCosine& turn,
+inline void addStraight(PathJet& jet, const LaneSpan<Here>& span, const SineCosine& turn,
                         const Mask& where) {
   const Real changing = span.cosine * turn.cosine + span.sine * turn.sine;
   const Real length = squareRoot(span.constant + changing);
@@ -32,7 +32,7 @@ struct EndJet {
   Real value[3], first[3], second[3];
 };
 
-inline void follow(const Turning<Lanes>& point, bool fixed, const SineCosine& turn, EndJet& end) {
+inline void follow(const Turning<Here>& point, bool fixed, const SineCosine& turn, EndJet& end) {
   for (int i = 0; i < 3; ++i) {
     if (fixed) {
       end.value[i] = point.middle[i];
@@ -47,7 +47,7 @@ inline void follow(const Turning<Lanes>& point, bool fixed, const SineCosine& tu
 
 /// wrapCylinderDyads and addCylinder along q; adds the span where it touches, of the lanes asked
 /// for. Returns where it did.
-inline Mask addCylinder(PathJet& jet, const Cylinder<Lanes>& cylinder, const SineCosine& turn,
+inline Mask addCylinder(PathJet& jet, const Cylinder<Here>& cylinder, const SineCosine& turn,
                         const Mask& where) {
   EndJet P, Q;
   follow(cylinder.ends[0], cylinder.fixed[0], turn, P);
@@ -119,15 +119,15 @@ inline Mask addCylinder(PathJet& jet, const Cylinder<Lanes>& cylinder, const Sin
 }
 
 /// The muscle–tendon length in the variant of every lane; adds it where asked for.
-inline void addVariant(PathJet& jet, const LaneModel<Lanes>& arm, const Variant<Lanes>& variant,
+inline void addVariant(PathJet& jet, const LaneModel<Here>& arm, const Variant<Here>& variant,
                        const SineCosine& turn, const Mask& where) {
   jet.length += choose(where, variant.fixedLength, same(0));
   Mask used[maxCylinders] = {};
   for (int i = variant.firstSpan; i < variant.firstSpan + variant.numSpans; ++i) {
-    const LaneSpan<Lanes>& span = arm.spans[i];
+    const LaneSpan<Here>& span = arm.spans[i];
     Mask left = where;
     for (int k = span.firstCylinder; k < span.firstCylinder + span.numCylinders; ++k) {
-      const Cylinder<Lanes>& cylinder = arm.cylinders[k];
+      const Cylinder<Here>& cylinder = arm.cylinders[k];
       const Mask taken = addCylinder(jet, cylinder, turn, left & ~used[cylinder.surface]);
       used[cylinder.surface] |= taken;
       left &= ~taken;
@@ -136,7 +136,7 @@ inline void addVariant(PathJet& jet, const LaneModel<Lanes>& arm, const Variant<
   }
 }
 
-inline PathJet muscleTendonLength(const LaneModel<Lanes>& arm, const LaneMuscle<Lanes>& muscle,
+inline PathJet muscleTendonLength(const LaneModel<Here>& arm, const LaneMuscle<Here>& muscle,
                                   const Real& q, const SineCosine& turn) {
   PathJet jet{same(0), same(0), same(0)};
   const Mask everywhere = q == q;
@@ -147,7 +147,7 @@ inline PathJet muscleTendonLength(const LaneModel<Lanes>& arm, const LaneMuscle<
   for (int bits = 0; bits < 1 << muscle.numConditions; ++bits) {
     Mask where = everywhere;
     for (int i = 0; i < muscle.numConditions; ++i) {
-      const Condition<Lanes>& condition = arm.conditions[muscle.firstCondition + i];
+      const Condition<Here>& condition = arm.conditions[muscle.firstCondition + i];
       const Mask holds = (q >= condition.lower) & (q <= condition.upper);
       where &= ((bits >> i) & 1) != 0 ? holds : ~holds;
     }

@@ -18,11 +18,11 @@ inline Mask isLast(const Real& correction, const Real& previous, double toleranc
 }
 
 /// The step's solver for some systems, with their muscles' laws.
-class StepSolver final : public LaneSolver {
+class StepSolver final : public LaneSolver<Here> {
  public:
-  explicit StepSolver(const LaneModel<Lanes>& system)
+  explicit StepSolver(const LaneModel<Here>& system)
       : system_(system), laws_(new AnyLaneMuscle[static_cast<std::size_t>(system.numMuscles)]) {
-    LawNumbers law;
+    LawNumbers<Here> law;
     for (int i = 0; i < system.numMuscles; ++i) {
       gather(system.muscles[i].of, law);
       laws_[i].set(law);
@@ -30,7 +30,7 @@ class StepSolver final : public LaneSolver {
   }
   ~StepSolver() override { delete[] laws_; }
 
-  void solve(LaneStep& step) override;
+  void solve(LaneStep<Here>& step) override;
 
  private:
   struct Moving {
@@ -40,21 +40,21 @@ class StepSolver final : public LaneSolver {
   struct MuscleSums {
     Real force, dTau, eliminated, carried;
   };
-  void addMuscles(LaneStep& step, const Moving& moving, MuscleSums& sums);
-  void addRigid(const AnyLaneMuscle& law, MuscleStep& kept, const PathJet& path,
+  void addMuscles(LaneStep<Here>& step, const Moving& moving, MuscleSums& sums);
+  void addRigid(const AnyLaneMuscle& law, MuscleStep<Here>& kept, const PathJet& path,
                 const Moving& moving, MuscleSums& sums);
-  Real correctFibres(LaneStep& step, const Real& dq);
+  Real correctFibres(LaneStep<Here>& step, const Real& dq);
 
-  LaneModel<Lanes> system_;
+  LaneModel<Here> system_;
   AnyLaneMuscle* laws_;
 };
 
 /// Forces of the muscles, and fibre lengths eliminated one by one.
-inline void StepSolver::addMuscles(LaneStep& step, const Moving& moving, MuscleSums& sums) {
+inline void StepSolver::addMuscles(LaneStep<Here>& step, const Moving& moving, MuscleSums& sums) {
   const Real& h = step.length;
   for (int i = 0; i < system_.numMuscles; ++i) {
-    const LaneMuscle<Lanes>& muscle = system_.muscles[i];
-    MuscleStep& kept = step.muscles[i];
+    const LaneMuscle<Here>& muscle = system_.muscles[i];
+    MuscleStep<Here>& kept = step.muscles[i];
     const PathJet path = muscleTendonLength(system_, muscle, step.place, moving.turn);
     kept.momentArm = path.slope;
     if (!muscle.hasFibreState) {
@@ -79,8 +79,8 @@ inline void StepSolver::addMuscles(LaneStep& step, const Moving& moving, MuscleS
 }
 
 /// The force of a muscle with a rigid tendon, whose fibre has no equation and stays as it is.
-inline void StepSolver::addRigid(const AnyLaneMuscle& law, MuscleStep& kept, const PathJet& path,
-                                 const Moving& moving, MuscleSums& sums) {
+inline void StepSolver::addRigid(const AnyLaneMuscle& law, MuscleStep<Here>& kept,
+                                 const PathJet& path, const Moving& moving, MuscleSums& sums) {
   RigidForce r;
   law.force({kept.activation, kept.fibreLength, path.length, path.slope * moving.v, 0.0}, r);
   const Real F_q = (r.dF_dPathLength.v / 2 + r.dF_dPathSpeed.v * moving.perStep) * path.slope +
@@ -93,10 +93,10 @@ inline void StepSolver::addRigid(const AnyLaneMuscle& law, MuscleStep& kept, con
 }
 
 /// Makes fibres' corrections of their residuals; the largest, of ℓ0.
-inline Real StepSolver::correctFibres(LaneStep& step, const Real& dq) {
+inline Real StepSolver::correctFibres(LaneStep<Here>& step, const Real& dq) {
   Real largest = same(0);
   for (int i = 0; i < system_.numMuscles; ++i) {
-    MuscleStep& kept = step.muscles[i];
+    MuscleStep<Here>& kept = step.muscles[i];
     const Real C_dq = -kept.dV_dMuscleTendonLength / 2 * kept.momentArm * dq;
     kept.residual = -(kept.residual + C_dq) * kept.inverse;  // now δℓ
     largest = larger(largest, absolute(kept.residual) * system_.muscles[i].perFibre);
@@ -105,8 +105,8 @@ inline Real StepSolver::correctFibres(LaneStep& step, const Real& dq) {
 }
 
 /// See VariationalStepper::solve, whose comments are not repeated.
-inline void StepSolver::solve(LaneStep& step) {
-  const LaneModel<Lanes>& system = system_;
+inline void StepSolver::solve(LaneStep<Here>& step) {
+  const LaneModel<Here>& system = system_;
   constexpr double largestTurn = 0.3;
   constexpr double largestFibreStep = 0.25;
   constexpr double near = 7e-6;
@@ -131,7 +131,7 @@ inline void StepSolver::solve(LaneStep& step) {
     const Real L_q = system.gravityCosine * turn.sine - system.gravitySine * turn.cosine;
     const Real dL_q = (system.gravityCosine * turn.cosine + system.gravitySine * turn.sine) / 2;
 
-    PassiveForce passive{none, none, none};
+    PassiveForce<Here> passive{none, none, none};
     if (system.hasForces) passiveForce(system, running, q_m, v, passive);
     const Real dPassive = passive.dForce_dq / 2 + passive.dForce_dqDot / h;
     MuscleSums sums{none, dPassive, none, none};
@@ -151,7 +151,7 @@ inline void StepSolver::solve(LaneStep& step) {
     shorten = choose(fibreSize * shorten > largestFibreStep, largestFibreStep / fibreSize, shorten);
     step.qEnd = choose(running, step.qEnd + shorten * dq, step.qEnd);
     for (int i = 0; i < system.numMuscles; ++i) {
-      MuscleStep& kept = step.muscles[i];
+      MuscleStep<Here>& kept = step.muscles[i];
       kept.fibreLengthEnd =
           choose(running, kept.fibreLengthEnd + shorten * kept.residual, kept.fibreLengthEnd);
     }
@@ -166,7 +166,7 @@ inline void StepSolver::solve(LaneStep& step) {
 
     // ends of the lanes that have come to theirs, to first order in the last correction
     for (int i = 0; i < system.numMuscles; ++i) {
-      const MuscleStep& kept = step.muscles[i];
+      const MuscleStep<Here>& kept = step.muscles[i];
       force -= kept.dF_dFibreLength / 2 * kept.residual * kept.momentArm;
     }
     force += (dTau - dPassive) * dq;

@@ -2,7 +2,7 @@
 
 namespace bio::lanes {
 
-LaneSolver* plainSolver(const LaneModel<Lanes>& system) {
+LaneSolver<Here>* plainSolver(const LaneModel<Here>& system) {
   return new StepSolver(system);
 }
 

@@ -2,7 +2,7 @@
 
 namespace bio::lanes {
 
-LaneSolver* wideSolver(const LaneModel<Lanes>& system) {
+LaneSolver<Here>* avx512Solver(const LaneModel<Here>& system) {
   return new StepSolver(system);
 }
 

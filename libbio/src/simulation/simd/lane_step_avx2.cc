@@ -1,0 +1,9 @@
+#include "simulation/simd/lane_step.h"
+
+namespace bio::lanes {
+
+LaneSolver<Here>* avx2Solver(const LaneModel<Here>& system) {
+  return new StepSolver(system);
+}
+
+}  // namespace bio::lanes
