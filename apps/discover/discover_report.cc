@@ -51,6 +51,8 @@ class Writer {
         if (t == first && !hasMain) {
           hasMain = true;
           report_.mainFigure = std::move(figure);
+        } else if (t == first) {
+          report_.details.emplace_back(std::move(figure));
         } else {
           (isHeldOut(t) ? heldOut_ : others_).push_back(std::move(figure));
         }
@@ -79,7 +81,7 @@ class Writer {
     reproduce();
     addExcitations(f_.excitations, report_);
     if (!others_.empty()) {
-      section(f_.wording.isInNoise() ? "Other outputs and trials" : "Other trials");
+      section("Other trials", "Measured and simulated, as above.");
       for (Figure& figure : others_) report_.details.emplace_back(std::move(figure));
     }
     return std::move(report_);
@@ -330,7 +332,7 @@ class Writer {
 
   const DiscoverFindings& f_;
   Report report_;
-  std::vector<Figure> heldOut_, others_;  ///< motions but the first
+  std::vector<Figure> heldOut_, others_;  ///< motions of all trials but the first
   bool isTold_ = false;                   ///< the table of excess errors
 };
 
