@@ -119,8 +119,8 @@ TEST(DiscoverCommand, ExpectsTheTrialToBeginWhereInitialSays) {
                        "--initial", "elbow_flexion=" + start, "--out", out});
     EXPECT_EQ(result.status, 0) << result.err;
     const auto verdict = nlohmann::json::parse(contentOf(out + "/verdict.json"));
-    const ProgramResult replayed = runFisherHill(
-        {"replay", elbow, train, "--initial", "elbow_flexion=" + start, "--json"});
+    const ProgramResult replayed =
+        runFisherHill({"replay", elbow, train, "--initial", "elbow_flexion=" + start, "--json"});
     EXPECT_NEAR(nlohmann::json::parse(replayed.out)["rms_error_deg"].get<double>(),
                 verdict["trials"][0]["rmse_nominal_deg"].get<double>(), 1e-9);
     for (const auto& fitted : verdict["fitted_parameters"]) {
