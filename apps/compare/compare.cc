@@ -7,6 +7,7 @@
 #include "bio/model/units.h"
 #include "bio/simulation/integrator_names.h"
 #include "command/command.h"
+#include "compare/compare_methods.h"
 #include "compare/compare_muscles_report.h"
 #include "compare/compare_report.h"
 #include "options/set_parameters.h"
@@ -117,12 +118,13 @@ class Compare : public Command {
     const CompareFindings findings{model_,  trial_,     input.trial, system, *rotation,
                                    options, comparison, also,        chosen};
     if (chosen != nullptr) {
-      summary.setSimulation(bio::name(chosen->integrator), chosen->step, options.duration,
-                            chosen->wallSeconds);
+      summary.setSimulationFigures(bio::name(chosen->integrator), chosen->step, options.duration,
+                                   chosen->wallSeconds);
     } else {
-      summary.setSimulation(simulation_.integrator, simulation_.stepOrDefault(), options.duration,
-                            comparison.reference.motion.wallSeconds);
+      summary.setSimulationFigures(simulation_.integrator, simulation_.stepOrDefault(),
+                                   options.duration, comparison.reference.motion.wallSeconds);
     }
+    sayComparison(findings, summary.methods());
     summary.set("start_from", bio::name(input.from));
     tellCompare(findings, summary);
     const Report report = compareReport(findings);
@@ -175,6 +177,7 @@ class Compare : public Command {
                           input.recorded.simulation.duration, classes.front().motion.wallSeconds);
     summary.set("start_from", bio::name(input.from));
     tellMuscles(findings, summary);
+    sayMuscleClasses(findings, summary.methods());
     const Report report = musclesReport(findings);
     if (png_) writeFigurePngs(report, folder);
     deliver(context, summary, report, folder);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -119,7 +120,8 @@ Report musclesReport(const MuscleFindings& f) {
       .title = "Motion by muscle class",
       .xLabel = "Time [s]",
       .yLabel = fmt::format("{} [{}]", f.coordinate.name, unit),
-      .caption = "The same excitations and the same shared numbers; fibres begin at rest."};
+      .caption =
+          "The same excitations and the same shared numbers; fibres begin in static equilibrium."};
   Table table{
       "Classes",
       {"class", "status", "RMS [deg]", "largest [deg]", fmt::format("measured RMS [{}]", unit),
@@ -150,7 +152,20 @@ Report musclesReport(const MuscleFindings& f) {
     bounds.rows.push_back(std::move(row));
   }
   report.mainFigure = figure;
-  report.details = {table, bounds};
+  table.title.clear();
+  report.details = {
+      Section{"Classes",
+              "How far the motion of each class is from that of the model, and what of it no "
+              "change of the model's own muscle parameters explains."},
+      table,
+      Section{"Identifiability",
+              "Whether the same data would tell as much of the muscles of each class: the smaller "
+              "the share, the better is a parameter known."},
+      bounds};
+  const bool anyLost = std::any_of(f.classes.begin(), f.classes.end(),
+                                   [](const auto& motion) { return !motion.lost.empty(); });
+  if (anyLost)
+    report.details.push_back(Section{"Lost", "What of the model's muscles a class has not."});
   for (const bio::MuscleClassMotion& motion : f.classes) {
     for (const std::string& lost : motion.lost) {
       report.details.push_back(Paragraph{fmt::format("As {}: lost is {}", motion.name, lost)});

@@ -6,9 +6,11 @@
 #include "bio/design/design_setup.h"
 #include "bio/design/separating_design.h"
 #include "command/command.h"
+#include "design/design_methods.h"
 #include "design/design_options.h"
 #include "design/design_report.h"
 #include "design/separating_report.h"
+#include "options/model_methods.h"
 #include "options/set_parameters.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
@@ -69,6 +71,7 @@ class Design : public Command {
     summary.setSimulation(typed_.simulation.integrator, simulation.step, input.trial.duration(),
                           result.after.motion.wallSeconds);
     tellDesign(findings, summary);
+    sayDesign(findings, typed_, summary.methods());
     deliver(context, summary, designReport(findings), folder);
     if (result.stopped) throw Interrupted{};
     return result.improved ? ExitStatus::done : ExitStatus::answerIsNo;
@@ -132,6 +135,8 @@ class Design : public Command {
     });
     summary.setSimulation(typed_.simulation.integrator, options.simulation.step, duration, wall);
     tellSeparation(findings, summary);
+    sayExcitations(system, summary.methods());
+    saySeparation(findings, typed_, summary.methods());
     deliver(context, summary, separatingReport(findings), folder);
     if (result.stopped) throw Interrupted{};
     return result.improved ? ExitStatus::done : ExitStatus::answerIsNo;

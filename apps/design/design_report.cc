@@ -184,6 +184,10 @@ Report designReport(const DesignFindings& f) {
   const std::size_t channels = f.result.after.trial.measured.size();
   report.mainFigure = predicted(f, 0);
   if (f.playback) report.details.push_back(*f.playback);
+  report.details.push_back(
+      Section{"What the experiment tells",
+              "How accurately each parameter can be known from the trial given and from the "
+              "designed experiment; a smaller bound is better."});
   report.details.push_back(boundTable(f));
   report.details.push_back(Paragraph{fmt::format(
       "A bound is the smallest standard deviation that an unbiased estimate can have (Cramér–Rao), "
@@ -208,12 +212,12 @@ Report designReport(const DesignFindings& f) {
         Paragraph{fmt::format("{} of {} simulated experiments converged.", f.monteCarlo->converged,
                               f.monteCarlo->trials.size())});
   }
-  for (std::size_t i = 1; i < channels; ++i) report.details.push_back(predicted(f, i));
-  addInputFigures(planned(f), report);
   report.details.push_back(knowledgeFigure(f));
-  report.details.push_back(limitsKept(f));
-  report.details.push_back(
-      searchFigure(f.result, f.result.costBefore, 1, "Criterion (smaller is better)"));
+  addFurther(
+      channels, [&](std::size_t i) { return predicted(f, i); }, report);
+  addInputFigures(planned(f), report);
+  addLimits(limitsKept(f), report);
+  addSearch(f.result, f.result.costBefore, 1, "Criterion (smaller is better)", report);
   report.details.push_back(Paragraph{fmt::format(
       "{} simulations with exact sensitivities, {} of which did not reach the end. design.sto "
       "holds the inputs and the predicted motion; `fisherhill replay` simulates it.",

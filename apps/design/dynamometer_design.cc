@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "design/design_methods.h"
 #include "design/design_options.h"
 #include "options/set_parameters.h"
 #include "options/system_options.h"
@@ -52,8 +53,9 @@ ExitStatus designOnDynamometer(const CommandContext& context, const DesignOption
   const bio::Coordinate& coordinate = bio::findCoordinate(model, options.coordinate);
   bio::DynamometerQuestion question = dynamometerQuestion(typed, coordinate);
   question.threads = context.threads;
-  const bio::DynamometerPlan plan = bio::planOnDynamometer(
-      model, system, systemOptions(simulation), simulationOptions(simulation, 0, 1), question);
+  const bio::SimulationOptions simulated = simulationOptions(simulation, 0, 1);
+  const bio::DynamometerPlan plan =
+      bio::planOnDynamometer(model, system, systemOptions(simulation), simulated, question);
   for (std::size_t n = 0; n < plan.chosen.size(); ++n) {
     folder.writeFile(names[n], [&](const std::filesystem::path& path) {
       bio::writeTable(plan.chosen[n].trial, path);
@@ -64,6 +66,8 @@ ExitStatus designOnDynamometer(const CommandContext& context, const DesignOption
                              plan.failed, plan.candidates));
   }
   tellDynamometer(plan, coordinate.isRotation, summary);
+  summary.saySimulation(simulation.integrator, simulated.step);
+  sayDynamometer(plan, question, coordinate.isRotation, summary.methods());
   deliver(context, summary, dynamometerReport(plan, question, coordinate.isRotation), folder);
   return ExitStatus::done;
 }

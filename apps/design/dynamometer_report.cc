@@ -79,7 +79,11 @@ Report dynamometerReport(const bio::DynamometerPlan& plan, const bio::Dynamomete
   }
   report.verdict = fmt::format("{} experiments of {} are expected to bring {}.", plan.chosen.size(),
                                plan.candidates, fmt::join(changes, ", "));
-  Table table{"In this order", {"", "instruction", "adds [nats]"}, {}};
+  report.details.emplace_back(
+      Section{"Experiments",
+              "In the order in which to do them: each adds most to what those before it tell. "
+              "Bounds are standard deviations after it and all before it."});
+  Table table{"", {"", "instruction", "adds [nats]"}, {}};
   for (const bio::ModelParameter& parameter : plan.parameters) {
     table.columns.push_back(fmt::format("± {} [{}]", parameter.name, unitText(parameter.unit)));
   }

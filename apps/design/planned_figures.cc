@@ -85,12 +85,33 @@ Figure predictionFigure(const PlannedInputs& planned, const bio::Observable& wha
 }
 
 void addInputFigures(const PlannedInputs& planned, Report& report) {
+  report.details.push_back(
+      Section{"Designed inputs",
+              "What is to be done to the limb, and how its muscles are to be driven; dashed lines "
+              "are the trial given."});
   for (const bio::CoordinateLimits& limits : planned.inputs.torques()) {
     report.details.push_back(torqueFigure(planned, limits));
   }
   for (const bio::MuscleGroup& group : planned.inputs.groups()) {
     report.details.push_back(excitationFigure(planned, group));
   }
+}
+
+void addFurther(std::size_t count, const std::function<Figure(std::size_t)>& predicted,
+                Report& report) {
+  if (count < 2) return;
+  report.details.push_back(
+      Section{"Other predictions", "What else moves or is measured, as the first figure has it."});
+  for (std::size_t i = 1; i < count; ++i) report.details.push_back(predicted(i));
+}
+
+void addLimits(Table table, Report& report) {
+  report.details.push_back(
+      Section{table.title,
+              "The extremes of inputs and motion in the designed experiment, beside the limits "
+              "that they had to respect."});
+  table.title.clear();
+  report.details.push_back(std::move(table));
 }
 
 void addLimit(Table& table, const std::string& quantity, double designed, double limit,
@@ -117,8 +138,18 @@ Table limitTable(const PlannedInputs& planned) {
   return table;
 }
 
-Figure searchFigure(const bio::DesignSearchRecord& record, double before, double sign,
-                    const std::string& yLabel) {
+void addSearch(const bio::DesignSearchRecord& record, double before, double sign,
+               const std::string& yLabel, Report& report) {
+  report.details.push_back(
+      Section{"Search",
+              "How the best experiment improved as more were simulated; a curve that is flat at "
+              "its end suggests that a longer search would find little more."});
+  if (record.costs.empty()) {
+    report.details.push_back(
+        Paragraph{"No simulated experiment was better than the trial given and respected every "
+                  "limit."});
+    return;
+  }
   Figure figure{.title = "Progress of the search",
                 .xLabel = "Simulations",
                 .yLabel = yLabel,
@@ -129,7 +160,7 @@ Figure searchFigure(const bio::DesignSearchRecord& record, double before, double
     series.y.push_back(sign * record.costs[i]);
   }
   figure.series.push_back(std::move(series));
-  return figure;
+  report.details.push_back(std::move(figure));
 }
 
 void tellPlan(const PlannedInputs& planned, const std::vector<bio::ChannelCandidate>& observed,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -33,14 +34,20 @@ Figure predictionFigure(const PlannedInputs& planned, const bio::Observable& wha
                         const std::string& caption);
 /// Every torque and every excitation that was designed.
 void addInputFigures(const PlannedInputs& planned, Report& report);
+/// A section of the predictions behind the first, if there are any.
+void addFurther(std::size_t count, const std::function<Figure(std::size_t)>& predicted,
+                Report& report);
+/// A table of limits as a section.
+void addLimits(Table table, Report& report);
 /// The limits of the torques and excitations.
 Table limitTable(const PlannedInputs& planned);
 /// Adds a row to it.
 void addLimit(Table& table, const std::string& quantity, double designed, double limit,
               const bio::ShownUnit& unit);
+/// How the search went.
 /// @param sign  of the costs
-Figure searchFigure(const bio::DesignSearchRecord& record, double before, double sign,
-                    const std::string& yLabel);
+void addSearch(const bio::DesignSearchRecord& record, double before, double sign,
+               const std::string& yLabel, Report& report);
 
 /// The summary of every search: what is observed, and where the free coordinates go.
 /// @param motions  of DesignLimits::coordinates

@@ -156,6 +156,10 @@ Report separatingReport(const SeparatingFindings& f) {
   report.verdict = writing.verdict();
   report.mainFigure = writing.predicted(0);
   if (f.playback) report.details.push_back(*f.playback);
+  report.details.push_back(
+      Section{"What the experiment tells",
+              "How clearly the trial given and the designed experiment discriminate between the "
+              "effects; more nats are better."});
   report.details.push_back(writing.telling());
   report.details.push_back(Paragraph{fmt::format(
       "The nats are the expected natural logarithm of the Bayes factor of the effect that is "
@@ -164,13 +168,12 @@ Report separatingReport(const SeparatingFindings& f) {
       "free. They are computed to first order about "
       "the model's own parameters and do not consider effects outside the catalogue.",
       measurementText(f.design.question().observed, f.design.question().period, f.model))});
-  for (std::size_t o = 1; o < f.design.question().observed.size(); ++o) {
-    report.details.push_back(writing.predicted(o));
-  }
+  addFurther(
+      f.design.question().observed.size(), [&](std::size_t o) { return writing.predicted(o); },
+      report);
   addInputFigures(writing.planned(), report);
-  report.details.push_back(writing.limits());
-  report.details.push_back(
-      searchFigure(f.result, f.result.before.tells.least(), -1, "Smaller log Bayes factor [nats]"));
+  addLimits(writing.limits(), report);
+  addSearch(f.result, f.result.before.tells.least(), -1, "Smaller log Bayes factor [nats]", report);
   report.details.push_back(
       Paragraph{fmt::format("{} experiments were simulated, {} of which did not reach the end. "
                             "design.sto holds the inputs and the motion of the unchanged model. "

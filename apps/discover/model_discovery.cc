@@ -179,6 +179,7 @@ ModelDiscovery discoverInModel(ModelDiscoveryRequest request, const CommandConte
       model, system, coordinates, trials, request.heldOut.size(), request.simulation.step,
       {},    {},     {}};
   asked.problem.simulation = simulationOptions(request.simulation, 0, 1);
+  asked.problem.initial = byName(request.simulation.initial);
   asked.problem.without = request.without;
   asked.problem.own = bio::discover::readUserEffects(request.effects);
   asked.search = engineOptions(request.maxEffects, request.inputScatter);

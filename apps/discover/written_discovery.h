@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bio/discovery/workflow.h"
+#include "discover/discover_verdict.h"
 #include "discover/model_discovery.h"
 #include "output/output_folder.h"
 #include "output/summary.h"

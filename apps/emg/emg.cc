@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bio/emg/emg.h"
@@ -11,7 +12,9 @@
 #include "bio/tables/recording.h"
 #include "bio/tables/table_file.h"
 #include "command/command.h"
+#include "emg/emg_methods.h"
 #include "output/json_text.h"
+#include "output/text.h"
 #include "report/result.h"
 
 namespace app {
@@ -58,6 +61,26 @@ Figure electrodeFigure(const bio::ElectrodeTrace& trace) {
   }
   figure.series.push_back(drawn("envelope", trace.envelope, trace.rate, trace.startTime));
   return figure;
+}
+
+Table electrodeTable(const bio::EmgResult& result) {
+  Table table{"",
+              {"electrode", "rate [Hz]", "excitation 1 at", "normalised by", "clipped to 1 [%]",
+               "set to 0 [%]"},
+              {}};
+  for (const bio::ElectrodeTrace& trace : result.electrodes) {
+    table.rows.push_back({trace.channel, numberText(trace.rate), withUnit(trace.full, trace.unit),
+                          trace.fullSource, numberText(100 * trace.fractionAbove, 2),
+                          numberText(100 * trace.fractionBelow, 2)});
+  }
+  return table;
+}
+
+/// Whether a remark is about one electrode, which a table says.
+bool isOfElectrode(const std::string& remark, const bio::EmgResult& result) {
+  return std::any_of(result.electrodes.begin(), result.electrodes.end(), [&](const auto& trace) {
+    return remark.starts_with(fmt::format("'{}': ", trace.channel));
+  });
 }
 
 Figure excitationFigure(const bio::EmgResult& result) {
@@ -149,6 +172,7 @@ class Emg : public Command {
     }
     tell(joined, result, summary);
     tellUnrecorded(config, summary);
+    sayEmg(joined, config, result, summary.methods());
     deliver(context, summary, reportOn(result), folder);
     return ExitStatus::done;
   }
@@ -241,15 +265,27 @@ class Emg : public Command {
                     result.electrodes.size() == 1 ? "s" : "", fmt::join(result.muscles, ", "));
     report.mainFigure = excitationFigure(result);
     if (!result.warnings.empty()) {
-      report.details.emplace_back(Section{"Channels that look wrong"});
+      report.details.emplace_back(
+          Section{"Channels that look wrong", "Look at these before the excitations are used."});
       for (const std::string& warning : result.warnings) {
         report.details.emplace_back(Paragraph{warning});
       }
     }
-    report.details.emplace_back(Section{"Processing steps and limitations"});
-    for (const std::string& remark : result.remarks) report.details.emplace_back(Paragraph{remark});
-    if (result.measured) report.details.emplace_back(measuredFigure(*result.measured));
-    report.details.emplace_back(Section{"Electrodes"});
+    report.details.emplace_back(
+        Section{"Processing steps and limitations",
+                "What was done to the recording, and what its excitations cannot show."});
+    for (const std::string& remark : result.remarks)
+      if (!isOfElectrode(remark, result)) report.details.emplace_back(Paragraph{remark});
+    if (result.measured) {
+      report.details.emplace_back(
+          Section{"Measured motion", "The angle that simulations will be compared with."});
+      report.details.emplace_back(measuredFigure(*result.measured));
+    }
+    report.details.emplace_back(
+        Section{"Electrodes",
+                "The signal of every electrode and its envelope, before normalisation: bursts "
+                "should stand out of the rest, and the envelope should follow them."});
+    report.details.emplace_back(electrodeTable(result));
     for (const bio::ElectrodeTrace& trace : result.electrodes) {
       report.details.emplace_back(electrodeFigure(trace));
     }

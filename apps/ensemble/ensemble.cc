@@ -11,6 +11,7 @@
 #include "discover/discover_search.h"
 #include "ensemble/ensemble_discovery.h"
 #include "ensemble/ensemble_draws.h"
+#include "ensemble/ensemble_methods.h"
 #include "ensemble/ensemble_report.h"
 #include "ensemble/missing_rows.h"
 #include "ensemble/parameter_laws.h"
@@ -198,6 +199,7 @@ class Ensemble : public Command {
     summary.set("computed", computed);
     summary.set("ranks", pool->ranks());
     tellEnsemble(findings, summary);
+    sayEnsemble(findings, laws_, context.seed, summary.methods());
     deliver(context, summary, ensembleReport(findings), folder);
     file.remove();
     return ExitStatus::done;

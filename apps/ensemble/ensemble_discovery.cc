@@ -7,6 +7,7 @@
 #include <chrono>
 #include <map>
 
+#include "ensemble/ensemble_methods.h"
 #include "ensemble/missing_rows.h"
 #include "info/version.h"
 #include "options/set_parameters.h"
@@ -124,11 +125,15 @@ Report discoveryReport(const std::vector<std::vector<std::string>>& rows, const 
   Report report{
       .title = fmt::format("Missing effects of {} in {} data sets", model, rows.size()),
       .verdict = fmt::format("Of {} data sets: {}.", rows.size(), fmt::join(parts, ", "))};
-  Table table{.title = "Verdicts",
+  Table table{.title = "",
               .columns = {"set", "verdict", "effects", "probability", "excess error explained",
                           "excess error explained, held out"},
               .rows = rows};
-  report.details = {table, Paragraph{"verdicts/NAME/report.html explains each verdict."}};
+  report.details = {
+      Section{"Verdicts",
+              "What discover found in each data set; the excess error explained is 1 where the "
+              "effects leave only noise."},
+      table, Paragraph{"verdicts/NAME/report.html explains each verdict."}};
   return report;
 }
 
@@ -179,6 +184,7 @@ ExitStatus discoverInSets(ModelDiscoveryRequest each, const fs::path& folder,
     ++counts[rows.back()[1]];
   }
   summary.setSimulation(each.simulation.integrator, each.simulation.stepOrDefault(), 0, wall);
+  sayDiscoveryInSets(each, sets.size(), summary.methods());
   summary.set("sets", sets.size());
   summary.set("computed", computed);
   summary.set("ranks", pool.ranks());

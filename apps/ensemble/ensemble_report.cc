@@ -17,7 +17,13 @@ std::string csvCell(double value) {
   return cellText(value, 9);
 }
 
-/// The output of a channel that Sobol's indices are of: "final", or "elbow_flexion.final".
+/// The output of a channel that Sobol's indices are of, in words: "final value of elbow_flexion".
+std::string outputWords(const EnsembleFindings& f, std::size_t c) {
+  return fmt::format("{} of {}", bio::ensembleOutputs()[bio::ensembleOutputNamed(f.output)].words,
+                     f.table.channels()[c].name);
+}
+
+/// Its name: "final", or "elbow_flexion.final".
 std::string outputOf(const EnsembleFindings& f, std::size_t c) {
   if (f.table.isOneCoordinate()) return f.output;
   return f.table.channels()[c].name + "." + f.output;
@@ -45,9 +51,11 @@ std::string verdictOf(const EnsembleFindings& f) {
     const auto& sobol = f.channels[c].sobol;
     Eigen::Index most = 0;
     if (!sobol || !(sobol->indices.total.maxCoeff(&most) > 0)) continue;
-    text += fmt::format(" {} contributes most to the variance of {} (total Sobol index {}).",
-                        parameters[static_cast<std::size_t>(most)].name, outputOf(f, c),
-                        numberText(sobol->indices.total[most], 2));
+    text += fmt::format(
+        " {} contributes most to the variance of the {} (total Sobol index "
+        "{}).",
+        parameters[static_cast<std::size_t>(most)].name, outputWords(f, c),
+        numberText(sobol->indices.total[most], 2));
   }
   return text;
 }
@@ -75,7 +83,7 @@ Figure bandFigure(const EnsembleFindings& f, std::size_t c) {
 
 Table outputTable(const EnsembleFindings& f, std::size_t c) {
   const auto& [name, unit] = f.table.channels()[c];
-  Table table{.title = f.table.isOneCoordinate() ? "Outputs" : "Outputs of " + name,
+  Table table{.title = f.table.isOneCoordinate() ? "" : "Outputs of " + name,
               .columns = {fmt::format("output [{}]", unitText(unit.name)), "nominal", "mean",
                           "standard deviation", "5 %", "median", "95 %"}};
   for (std::size_t i = 0; i < bio::ensembleOutputs().size(); ++i) {
@@ -112,7 +120,7 @@ Table parameterTable(const EnsembleFindings& f) {
 Table sobolTable(const EnsembleFindings& f, std::size_t c) {
   const bio::SobolFinding& s = *f.channels[c].sobol;
   const auto& parameters = f.ensemble.laws().parameters;
-  Table table{.title = fmt::format("Sobol's indices of {}", outputOf(f, c)),
+  Table table{.title = fmt::format("Sobol's indices of the {}", outputWords(f, c)),
               .columns = {"parameter", "first order", "95 % interval", "total", "95 % interval"}};
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
@@ -314,12 +322,31 @@ Report ensembleReport(const EnsembleFindings& f) {
                 .verdict = verdictOf(f),
                 .mainFigure = bandFigure(f, 0)};
   const std::size_t channels = f.channels.size();
+  if (channels > 1) {
+    report.details.push_back(
+        Section{"Other channels", "Median and band of everything else that is observed."});
+  }
   for (std::size_t c = 1; c < channels; ++c) report.details.push_back(bandFigure(f, c));
+  report.details.push_back(
+      Section{"Outputs",
+              "Numbers of every simulation: nominal is the model with its own parameters, the rest "
+              "is how the drawn parameters spread them."});
   for (std::size_t c = 0; c < channels; ++c) report.details.push_back(outputTable(f, c));
-  report.details.push_back(outcomeTable(f));
+  if (f.channels.front().sobol) {
+    report.details.push_back(
+        Section{"Sensitivity",
+                "The share of an output's variance that a parameter causes by itself (first order) "
+                "and together with others (total); a total index near 0 means that the parameter "
+                "does not matter."});
+  }
   for (std::size_t c = 0; c < channels && f.channels[c].sobol; ++c) {
     report.details.push_back(sobolTable(f, c));
   }
+  report.details.push_back(
+      Section{"Simulations",
+              "How the simulations ended, and what their parameters were drawn "
+              "from."});
+  report.details.push_back(outcomeTable(f));
   report.details.push_back(parameterTable(f));
   return report;
 }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bio/analysis/driven_trial.h"
 #include "bio/analysis/sensitivity_study.h"
 #include "bio/model/units.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/simulation/integrator_names.h"
+#include "bio/tables/table_text.h"
 #include "command/command.h"
 #include "explore/explore_page.h"
 #include "explore/explored_models.h"
@@ -135,10 +137,6 @@ class Explore : public Command {
     if (!(noise_ > 0 && std::isfinite(noise_))) {
       throw std::invalid_argument(fmt::format("--noise: {} deg, must be > 0", noise_));
     }
-    if (simulation_.prescribeCutoff) {
-      throw std::invalid_argument(
-          "--prescribe-cutoff: a page takes prescribed motions as they are in the trial");
-    }
     if (simulation_.integrator == "cvode" || simulation_.integrator == "vi-adaptive") {
       throw std::invalid_argument(
           fmt::format("--integrator {}: a page has vi, vi-left and rk4, must be one of them",
@@ -238,6 +236,15 @@ class Explore : public Command {
             {"parameters", parameters}};
   }
 
+  /// A trial as the page reads it: its file, or with prescribed motions that are smooth already.
+  std::string trialText(const std::string& file, const bio::MusculoskeletalSystem& system,
+                        const std::vector<TrialInput>& inputs) const {
+    const auto recorded = std::find(trials_.begin(), trials_.end(), file);
+    if (!simulation_.prescribeCutoff || recorded == trials_.end()) return fileText(file);
+    const bio::Trial& trial = inputs[static_cast<std::size_t>(recorded - trials_.begin())].trial;
+    return bio::tableText(bio::drivenTable(trial, system, {}), file);
+  }
+
   /// Options of `replay` that the page's command line needs, beside those that the page changes.
   std::string optionText() const {
     SimulationOptions options = simulation_;
@@ -263,7 +270,7 @@ class Explore : public Command {
       const ExploredModel& one = models_[m];
       files[one.file] = one.text;
       for (const std::string& trial : one.trials)
-        if (!files.contains(trial)) files[trial] = fileText(trial);
+        if (!files.contains(trial)) files[trial] = trialText(trial, system, inputs);
       Json indices = Json::array(), values = Json::array();
       std::vector<std::string> names;
       for (std::size_t i = 0; i < parameters.list.size(); ++i) {

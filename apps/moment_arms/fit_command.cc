@@ -9,6 +9,8 @@
 
 #include "bio/analysis/fit_paths.h"
 #include "bio/opensim/osim_file.h"
+#include "moment_arms/moment_arm_methods.h"
+#include "options/model_methods.h"
 #include "options/number_rules.h"
 #include "options/system_options.h"
 #include "options/trial_input.h"
@@ -96,6 +98,10 @@ Report reportOnFit(const std::string& file, const std::vector<bio::MuscleFit>& f
                 "; the others keep their points: no polynomial of order {} or less is "
                 "within {} mm, or there is another reason.",
                 request.order, numberText(request.tolerance));
+  report.details.push_back(
+      Section{"Polynomials",
+              "Order and error of the polynomial of each muscle; one that is not written keeps its "
+              "points."});
   report.details.push_back(table);
   report.details.push_back(Paragraph{
       "Between the ends of the coordinates' ranges or, with a table, among its postures; "
@@ -182,6 +188,8 @@ ExitStatus runFit(const CommandContext& context, Summary& summary, const std::st
   summary.set("muscles", muscles);
   summary.set("notes", nlohmann::ordered_json::array());
   summary.set("fits", all);
+  sayPathFits(model, fits, request, summary.methods());
+  sayCylinders(options.wrapAsCylinder, summary.methods());
   deliver(context, summary, reportOnFit(file, fits, request), folder);
   return written > 0 ? ExitStatus::done : ExitStatus::answerIsNo;
 }

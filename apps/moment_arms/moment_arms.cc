@@ -8,7 +8,9 @@
 #include "bio/model/units.h"
 #include "command/command.h"
 #include "moment_arms/fit_command.h"
+#include "moment_arms/moment_arm_methods.h"
 #include "moment_arms/path_jumps.h"
+#include "options/model_methods.h"
 #include "options/number_rules.h"
 #include "options/set_parameters.h"
 #include "options/system_options.h"
@@ -104,7 +106,14 @@ class MomentArms : public Command {
     summary.set("ranges", ranges);
     summary.set("jumps", jumpsAsJson(jumps));
     summary.set("opensim_differences", differencesAsJson(differences));
+    sayMomentArms(model, sample, coordinate.name, shown, unitName, summary.methods());
+    sayCylinders(asCylinder, summary.methods());
+    sayOpenSimDifferences(differences, summary.methods());
     Report report = reportOn(sample, shown, coordinate, unitName);
+    if (!jumps.empty() || !differences.empty()) {
+      report.details.push_back(Section{"Where paths are special",
+                                       "Where a length jumps, or is another one than OpenSim's."});
+    }
     if (!jumps.empty()) report.details.push_back(jumpTable(jumps));
     if (!differences.empty()) {
       report.details.push_back(differenceTable(differences));
@@ -144,6 +153,8 @@ class MomentArms : public Command {
     summary.set("notes", paths.notes);
     const Eigen::Index missing = paths.length.array().isNaN().count();
     summary.set("lengths_without_value", missing);
+    sayPostures(model, paths, summary.methods());
+    sayCylinders(model_options_.wrapAsCylinder, summary.methods());
     Report report;
     report.title = fmt::format("Muscle–tendon lengths of {} in {}", model_, postures_);
     report.verdict =
@@ -157,7 +168,11 @@ class MomentArms : public Command {
            fmt::format("{:.2f}", 1e3 * lengths.minCoeff<Eigen::PropagateNumbers>()),
            fmt::format("{:.2f}", 1e3 * lengths.maxCoeff<Eigen::PropagateNumbers>())});
     }
+    report.details.push_back(
+        Section{"Lengths", "Of whole muscle paths, tendons included, over all postures."});
     report.details.push_back(table);
+    if (!paths.notes.empty())
+      report.details.push_back(Section{"Notes", "What is special about paths of this model."});
     for (const std::string& note : paths.notes) report.details.push_back(Paragraph{note});
     deliver(context, summary, report, folder);
     return ExitStatus::done;
@@ -233,7 +248,13 @@ class MomentArms : public Command {
     report.mainFigure = arms;
     report.verdict =
         fmt::format("{} muscles are moved by {}.", sample.muscles.size(), coordinate.name);
+    report.details.push_back(
+        Section{"Lengths",
+                "Of whole muscle paths, tendons included; a moment arm is minus the slope of this "
+                "curve."});
     report.details.push_back(lengths);
+    if (!sample.notes.empty())
+      report.details.push_back(Section{"Notes", "What is special about paths of this model."});
     for (const std::string& note : sample.notes) report.details.push_back(Paragraph{note});
     return report;
   }

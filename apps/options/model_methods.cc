@@ -7,6 +7,8 @@
 #include <map>
 #include <optional>
 
+#include "output/text.h"
+
 namespace app {
 namespace {
 
@@ -33,14 +35,14 @@ void sayModel(const bio::Model& model, const bio::MusculoskeletalSystem& system,
   methods.say(Part::model, sentence + "; all other coordinates are locked.");
 
   std::map<std::string, int> classes;
-  bool wraps = false;
+  std::vector<std::string> muscles;
   for (const bio::SystemMuscle& muscle : system.muscles()) {
+    muscles.push_back(muscle.name);
     const auto found =
         std::find_if(model.muscles.begin(), model.muscles.end(),
                      [&](const bio::Muscle& one) { return one.name == muscle.name; });
     if (found == model.muscles.end()) continue;
     ++classes[found->className];
-    wraps = wraps || !found->path.wraps.empty();
   }
   for (const auto& [className, count] : classes) {
     const std::optional<Publication> source = publicationOfClass(className);
@@ -50,13 +52,42 @@ void sayModel(const bio::Model& model, const bio::MusculoskeletalSystem& system,
                             source ? " (" + citation(*source) + ")" : ""),
                 source ? std::vector{*source} : std::vector<Publication>{});
   }
-  if (wraps) {
-    methods.say(Part::model,
-                "Muscle paths are the shortest ones round the model's wrap surfaces and slide "
-                "without friction.");
-  }
+  sayPaths(model, muscles, methods);
   methods.assume(
       "Segments are rigid, and nothing touches them but the loads that model and trial name.");
+}
+
+void sayPaths(const bio::Model& model, const std::vector<std::string>& muscles, Methods& methods) {
+  std::size_t functions = 0;
+  bool wraps = false;
+  for (const bio::Muscle& muscle : model.muscles) {
+    if (std::find(muscles.begin(), muscles.end(), muscle.name) == muscles.end()) continue;
+    if (muscle.path.function) ++functions;
+    wraps = wraps || !muscle.path.wraps.empty();
+  }
+  if (wraps) {
+    methods.say(Methods::Part::model,
+                "Muscle paths are the shortest ones round the model's wrap surfaces and slide "
+                "without friction.");
+  } else if (functions < muscles.size()) {
+    methods.say(Methods::Part::model, "Muscle paths are straight between their points.");
+  }
+  if (functions > 0) {
+    methods.say(
+        Methods::Part::model,
+        fmt::format("The {} a function of the coordinates that the model's file gives.",
+                    functions == 1 ? std::string("length of one muscle is")
+                                   : fmt::format("length of each of {} muscles is", functions)));
+  }
+}
+
+void sayCylinders(const std::vector<std::string>& wrapAsCylinder, Methods& methods) {
+  if (wrapAsCylinder.empty()) return;
+  methods.say(Methods::Part::model,
+              fmt::format("{} {} taken as {}.", listed(wrapAsCylinder),
+                          wrapAsCylinder.size() == 1 ? "is an ellipsoid that was"
+                                                     : "are ellipsoids that were",
+                          wrapAsCylinder.size() == 1 ? "a cylinder" : "cylinders"));
 }
 
 void sayExcitations(const bio::MusculoskeletalSystem& system, Methods& methods) {

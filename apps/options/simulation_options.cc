@@ -66,11 +66,17 @@ nlohmann::ordered_json settingsOf(const SimulationOptions& options) {
     for (const Assignment& assignment : assignments) list[assignment.name] = assignment.value;
     return list;
   };
-  return {{"integrator", options.integrator},           {"step_s", options.stepOrDefault()},
-          {"coordinates", options.coordinates},         {"locked", listed(options.locks)},
-          {"initial", listed(options.initial)},         {"set", listed(options.set)},
-          {"wrap_as_cylinder", options.wrapAsCylinder}, {"ignore_extra", options.ignoreExtra},
-          {"prescribed", options.prescribed},           {"held", options.held}};
+  return {{"integrator", options.integrator},
+          {"step_s", options.stepOrDefault()},
+          {"coordinates", options.coordinates},
+          {"locked", listed(options.locks)},
+          {"initial", listed(options.initial)},
+          {"set", listed(options.set)},
+          {"wrap_as_cylinder", options.wrapAsCylinder},
+          {"ignore_extra", options.ignoreExtra},
+          {"prescribed", options.prescribed},
+          {"prescribe_cutoff_Hz", options.prescribeCutoff.value_or(0)},
+          {"held", options.held}};
 }
 
 void addModelOptions(CLI::App& subcommand, SimulationOptions& options) {

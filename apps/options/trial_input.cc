@@ -223,6 +223,7 @@ bio::MusculoskeletalSystem movableSystem(const bio::Model& model, const std::str
         fmt::format("{}: no muscle moves {}", file, fmt::join(options.coordinates, ", ")));
   }
   sayModel(model, system, summary.methods());
+  sayCylinders(options.wrapAsCylinder, summary.methods());
   return system;
 }
 

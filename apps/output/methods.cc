@@ -19,12 +19,23 @@ PublicationText textOf(Publication publication) {
     case Publication::alvarez2009:
       return {"Alvarez et al., 2009",
               "M. A. Alvarez, D. Luengo, N. D. Lawrence, Latent force models, AISTATS 2009."};
+    case Publication::ansariMurphey2016:
+      return {"Ansari and Murphey, 2016",
+              "A. R. Ansari, T. D. Murphey, Sequential action control: closed-form optimal control "
+              "for nonlinear and nonsmooth systems, IEEE Transactions on Robotics 32, 2016."};
     case Publication::deGroote2016:
       return {
           "De Groote et al., 2016",
           "F. De Groote, A. L. Kinney, A. V. Rao, B. J. Fregly, Evaluation of direct collocation "
           "optimal control problem formulations for solving the muscle redundancy problem, Annals "
           "of Biomedical Engineering 44, 2016."};
+    case Publication::hansen2016:
+      return {"Hansen, 2016",
+              "N. Hansen, The CMA evolution strategy: a tutorial, arXiv:1604.00772, 2016."};
+    case Publication::hauserSaccon2006:
+      return {"Hauser and Saccon, 2006",
+              "J. Hauser, A. Saccon, A barrier function method for the optimization of trajectory "
+              "functionals with constraints, IEEE Conference on Decision and Control, 2006."};
     case Publication::hindmarsh2005:
       return {
           "Hindmarsh et al., 2005",
@@ -39,6 +50,10 @@ PublicationText textOf(Publication publication) {
       return {"Ljung and Box, 1978",
               "G. M. Ljung, G. E. P. Box, On a measure of lack of fit in time series models, "
               "Biometrika 65, 1978."};
+    case Publication::lloydBesier2003:
+      return {"Lloyd and Besier, 2003",
+              "D. G. Lloyd, T. F. Besier, An EMG-driven musculoskeletal model to estimate muscle "
+              "forces and knee joint moments in vivo, Journal of Biomechanics 36, 2003."};
     case Publication::macKay1992:
       return {"MacKay, 1992",
               "D. J. C. MacKay, Bayesian interpolation, Neural Computation 4, 1992."};
@@ -47,6 +62,11 @@ PublicationText textOf(Publication publication) {
           "Millard et al., 2013",
           "M. Millard, T. Uchida, A. Seth, S. L. Delp, Flexing computational muscle: modeling and "
           "simulation of musculotendon dynamics, Journal of Biomechanical Engineering 135, 2013."};
+    case Publication::saltelli2010:
+      return {"Saltelli et al., 2010",
+              "A. Saltelli, P. Annoni, I. Azzini, F. Campolongo, M. Ratto, S. Tarantola, Variance "
+              "based sensitivity analysis of model output. Design and estimator for the total "
+              "sensitivity index, Computer Physics Communications 181, 2010."};
     case Publication::schutte1993:
       return {"Schutte et al., 1993",
               "L. M. Schutte, M. M. Rodgers, F. E. Zajac, R. M. Glaser, Improving the efficacy of "
@@ -56,6 +76,10 @@ PublicationText textOf(Publication publication) {
       return {"Thelen, 2003",
               "D. G. Thelen, Adjustment of muscle mechanics model parameters to simulate dynamic "
               "contractions in older adults, Journal of Biomechanical Engineering 125, 2003."};
+    case Publication::tobin1958:
+      return {"Tobin, 1958",
+              "J. Tobin, Estimation of relationships for limited dependent variables, Econometrica "
+              "26, 1958."};
     case Publication::transtrum2012:
       return {
           "Transtrum and Sethna, 2012",

@@ -7,14 +7,20 @@ namespace app {
 
 enum class Publication {
   alvarez2009,
+  ansariMurphey2016,
   deGroote2016,
+  hansen2016,
+  hauserSaccon2006,
   hindmarsh2005,
   kassRaftery1995,
   ljungBox1978,
+  lloydBesier2003,
   macKay1992,
   millard2013,
+  saltelli2010,
   schutte1993,
   thelen2003,
+  tobin1958,
   transtrum2012,
   wilson
 };

@@ -19,12 +19,21 @@ void Summary::set(const std::string& name, nlohmann::ordered_json value) {
   figures_[name] = std::move(value);
 }
 
-void Summary::setSimulation(const std::string& integrator, double step, double duration,
-                            double wallTime) {
+void Summary::setSimulationFigures(const std::string& integrator, double step, double duration,
+                                   double wallTime) {
   set("integrator", integrator);
   set("step_s", step);
   set("duration_s", duration);
   set("wall_s", wallTime);
+}
+
+void Summary::setSimulation(const std::string& integrator, double step, double duration,
+                            double wallTime) {
+  setSimulationFigures(integrator, step, duration, wallTime);
+  saySimulation(integrator, step);
+}
+
+void Summary::saySimulation(const std::string& integrator, double step) {
   const std::string every = fmt::format(" of {} s", numberText(step));
   const auto say = [&](const std::string& sentence, Publication source) {
     methods_.say(Methods::Part::simulation, sentence, {source});

@@ -30,8 +30,12 @@ class Summary {
   /// Adds one value: a number, text, list or object.
   void set(const std::string& name, nlohmann::ordered_json value);
 
-  /// The simulation's own entries: integrator, step_s, duration_s, wall_s; and what the methods say
-  /// of it.
+  /// The simulation's own entries: integrator, step_s, duration_s, wall_s.
+  void setSimulationFigures(const std::string& integrator, double step, double duration,
+                            double wallTime);
+  /// What the methods say of it.
+  void saySimulation(const std::string& integrator, double step);
+  /// Both.
   void setSimulation(const std::string& integrator, double step, double duration, double wallTime);
 
   /// Prints a warning on standard error and keeps it in the summary.

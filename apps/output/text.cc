@@ -45,6 +45,15 @@ std::string withUnit(double value, const std::string& unit, int digits) {
   return numberText(value, digits) + (unit.empty() ? "" : " " + unit);
 }
 
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? " and " : ", ";
+    text += words[i];
+  }
+  return text;
+}
+
 std::string identifiableWords(std::ptrdiff_t identifiable, std::ptrdiff_t all) {
   if (all == 1) return fmt::format("The parameter is {}identifiable", identifiable ? "" : "not ");
   if (identifiable == all) {

@@ -29,6 +29,9 @@ double numberIn(const std::string& text);
 /// "0.016 m", or "0.016" for a pure number.
 std::string withUnit(double value, const std::string& unit, int digits = 4);
 
+/// "a", "a and b", "a, b and c"
+std::string listed(const std::vector<std::string>& words);
+
 /// "Both parameters are identifiable": how many of all are, without a full stop.
 std::string identifiableWords(std::ptrdiff_t identifiable, std::ptrdiff_t all);
 

@@ -11,17 +11,18 @@
 namespace app {
 namespace {
 
-constexpr double most = 32767;
+constexpr double largestCode = 32767;
 
 /// Writes numbers about a centre.
 class Packer {
  public:
   explicit Packer(const Eigen::AlignedBox3d& box)
       : centre(box.isEmpty() ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(box.center())),
-        unit(box.isEmpty() ? 1 : std::max(1e-9, 0.5 * box.sizes().maxCoeff() / most)) {}
+        unit(box.isEmpty() ? 1 : std::max(1e-9, 0.5 * box.sizes().maxCoeff() / largestCode)) {}
 
   void add(double value) {
-    const double whole = std::isfinite(value) ? std::clamp(std::round(value), -most, most) : 0;
+    const double whole =
+        std::isfinite(value) ? std::clamp(std::round(value), -largestCode, largestCode) : 0;
     const auto bits = static_cast<std::uint16_t>(static_cast<std::int16_t>(whole));
     bytes.push_back(static_cast<char>(bits & 0xff));
     bytes.push_back(static_cast<char>(bits >> 8));
@@ -34,7 +35,7 @@ class Packer {
   void addBody(const bio::Placement<double>& X) {
     addPoint(X.p);
     const Eigen::Quaterniond turn(X.R);
-    for (const double part : {turn.x(), turn.y(), turn.z(), turn.w()}) add(most * part);
+    for (const double part : {turn.x(), turn.y(), turn.z(), turn.w()}) add(largestCode * part);
   }
 
   void addLine(const PlayedLine& line) {

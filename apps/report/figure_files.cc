@@ -112,7 +112,8 @@ class FigureWriter {
 
   void writeContents(const std::string& title) {
     const std::string head = fmt::format(
-        "% Figures and tables of: {}\n% The preamble needs \\usepackage{{graphicx,booktabs}}\n",
+        "% Figures and tables of: {}\n% The preamble needs "
+        "\\usepackage{{graphicx,booktabs,tabularx}}\n",
         oneComment(title));
     std::string list;
     for (const std::string& name : written_) list += "% file: " + name + "\n";

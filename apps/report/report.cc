@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <regex>
 #include <stdexcept>
 
 #include "info/version.h"
@@ -120,6 +121,14 @@ std::string html(const Playback& playback) {
       htmlText(playback.caption));
 }
 
+/// A line may break behind a hyphen, which "5.4e-05" has: such numbers are kept together.
+std::string cellHtml(const std::string& cell) {
+  const std::string text = htmlText(cell);
+  if (text.find("e-") == text.npos) return text;
+  static const std::regex number("[0-9.]+e-[0-9]+");
+  return std::regex_replace(text, number, "<span class=\"number\">$&</span>");
+}
+
 std::string html(const Table& table) {
   std::string text = "<div class=\"table\">\n";
   if (!table.title.empty()) text += fmt::format("<h3>{}</h3>\n", htmlText(table.title));
@@ -135,7 +144,7 @@ std::string html(const Table& table) {
                       row.size(), table.columns.size()));
     }
     text += "<tr>";
-    for (const std::string& cell : row) text += fmt::format("<td>{}</td>", htmlText(cell));
+    for (const std::string& cell : row) text += fmt::format("<td>{}</td>", cellHtml(cell));
     text += "</tr>\n";
   }
   return text + "</tbody>\n</table>\n</div>\n";

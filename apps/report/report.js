@@ -54,6 +54,14 @@
     return { stroke: path, fill: null, clip: null, band: null, gaps: null, flags: 1 };
   };
 
+  // A constant is a level line in the middle of its axis, not at the edge of one from 0 to 100.
+  const range = (log, usual) => log ? undefined : (plot, low, high) => {
+    if (low === null || high === null) return [0, 1];
+    const size = Math.max(Math.abs(low), Math.abs(high));
+    if (size < 1e-300) return [-1, 1];
+    return high - low < 1e-9 * size ? [low - 0.1 * size, high + 0.1 * size] : usual(low, high);
+  };
+
   const axis = (label, side) => ({
     label, font, labelFont: "600 " + font, labelSize: 26, labelGap: 2,
     // On the left the axis is as wide as its longest number.
@@ -114,8 +122,8 @@
     const plot = new uPlot({
       width: place.clientWidth, height: 340, series, bands,
       scales: {
-        x: { time: false, distr: figure.xLog ? 3 : 1 },
-        y: { distr: figure.yLog ? 3 : 1 },
+        x: { time: false, distr: figure.xLog ? 3 : 1, range: range(figure.xLog, (low, high) => [low, high]) },
+        y: { distr: figure.yLog ? 3 : 1, range: range(figure.yLog, (low, high) => uPlot.rangeNum(low, high, 0.1, true)) },
       },
       axes: [axis(figure.xLabel, "x"), axis(figure.yLabel, "y")],
       cursor: { points: { size: 7 }, drag: { x: true, y: true, uni: 30 } },

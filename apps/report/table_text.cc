@@ -138,22 +138,104 @@ std::string latexCell(const std::string& cell) {
   return fmt::format("${}\\cdot10^{{{}}}$", digits.substr(0, at), std::stol(digits.substr(at + 1)));
 }
 
-std::string latexRow(const std::vector<std::string>& cells) {
-  std::string row;
-  for (std::size_t i = 0; i < cells.size(); ++i) row += (i > 0 ? " & " : "") + latexCell(cells[i]);
-  return row + " \\\\\n";
+/// Characters of a text, not bytes.
+std::size_t lengthOf(std::string_view text) {
+  std::size_t length = 0;
+  for (; !text.empty(); text.remove_prefix(bytesOfFirst(text))) ++length;
+  return length;
 }
 
-/// "r" for numbers, "l" for text, a paragraph where a text is long.
-std::string alignment(const Table& table, std::size_t column) {
-  constexpr std::size_t longest = 50;
-  bool numbers = !table.rows.empty();
-  for (const auto& row : table.rows) {
-    const std::string& cell = row.at(column);
-    if (cell.size() > longest) return "p{0.45\\linewidth}";
-    numbers = numbers && (cell.empty() || cell == "–" || isNumber(cell));
+/// A column of a LaTeX table; lengths in characters.
+struct LatexColumn {
+  bool numbers = false;    ///< set to the right
+  bool wraps = false;      ///< takes a share of the line's width, and breaks its texts
+  bool twoLines = false;   ///< the head alone is broken
+  std::size_t head = 0;    ///< of the head
+  std::size_t widest = 0;  ///< of the longest cell
+
+  std::size_t width() const {
+    constexpr std::size_t leastWrapped = 14;
+    if (wraps) return leastWrapped;
+    return std::max(twoLines ? (head + 1) / 2 : head, widest);
   }
-  return numbers ? "r" : "l";
+};
+
+/// Where a head is broken into two lines: the space nearest to its middle.
+std::size_t breakOf(const std::string& head) {
+  std::size_t best = head.npos;
+  const auto distance = [&](std::size_t at) {
+    return std::max(2 * at, head.size()) - std::min(2 * at, head.size());
+  };
+  for (std::size_t at = head.find(' '); at != head.npos; at = head.find(' ', at + 1))
+    if (best == head.npos || distance(at) < distance(best)) best = at;
+  return best;
+}
+
+/// Makes a table narrower that is too wide for a page: heads of two lines, then the longest texts
+/// as columns that wrap.
+void narrow(const Table& table, std::vector<LatexColumn>& columns) {
+  constexpr std::size_t line = 78, shortest = 14, between = 2;
+  const auto isTooWide = [&] {
+    std::size_t sum = 0;
+    for (const LatexColumn& column : columns) sum += column.width() + between;
+    return sum > line + between;
+  };
+  if (isTooWide()) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      columns[i].twoLines =
+          columns[i].head > columns[i].widest && breakOf(table.columns[i]) != std::string::npos;
+    }
+  }
+  while (isTooWide()) {
+    LatexColumn* longest = nullptr;
+    for (LatexColumn& column : columns) {
+      if (column.numbers || column.wraps || column.widest <= shortest) continue;
+      if (longest == nullptr || column.widest > longest->widest) longest = &column;
+    }
+    if (longest == nullptr) return;
+    longest->wraps = true;
+    longest->twoLines = false;
+  }
+}
+
+std::vector<LatexColumn> latexColumns(const Table& table) {
+  std::vector<LatexColumn> columns;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    LatexColumn column{.numbers = !table.rows.empty(), .head = lengthOf(table.columns[i])};
+    for (const auto& row : table.rows) {
+      const std::string& cell = row.at(i);
+      column.widest = std::max(column.widest, lengthOf(cell));
+      column.numbers = column.numbers && (cell.empty() || cell == "–" || isNumber(cell));
+    }
+    columns.push_back(column);
+  }
+  narrow(table, columns);
+  return columns;
+}
+
+/// With breaks allowed behind the slashes and underscores of names and paths.
+std::string breakable(std::string latex) {
+  for (const std::string sign : {"/", "\\_"}) {
+    for (std::size_t at = latex.find(sign); at != latex.npos; at = latex.find(sign, at + 1))
+      latex.insert(at + sign.size(), "\\allowbreak{}");
+  }
+  return latex;
+}
+
+std::string latexHead(const std::string& head, const LatexColumn& column) {
+  if (!column.twoLines) return latexText(head);
+  const std::size_t at = breakOf(head);
+  return fmt::format("\\shortstack[{}]{{{}\\\\{}}}", column.numbers ? 'r' : 'l',
+                     latexText(head.substr(0, at)), latexText(head.substr(at + 1)));
+}
+
+/// Cells that are LaTeX as a row. A bracket or a star at its beginning would be an argument of what
+/// stands before it.
+std::string latexRow(const std::vector<std::string>& cells) {
+  std::string row;
+  for (std::size_t i = 0; i < cells.size(); ++i) row += (i > 0 ? " & " : "") + cells[i];
+  if (row.starts_with('[') || row.starts_with('*')) row.insert(0, "{}");
+  return row + " \\\\\n";
 }
 
 }  // namespace
@@ -192,13 +274,29 @@ std::string latexText(std::string_view text) {
 }
 
 std::string latexTable(const Table& table) {
-  std::string columns;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) columns += alignment(table, i);
+  const std::vector<LatexColumn> columns = latexColumns(table);
+  const bool wraps = std::any_of(columns.begin(), columns.end(),
+                                 [](const LatexColumn& column) { return column.wraps; });
+  std::string alignment;
+  std::vector<std::string> heads;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    alignment += columns[i].wraps     ? ">{\\raggedright\\arraybackslash}X"
+                 : columns[i].numbers ? "r"
+                                      : "l";
+    heads.push_back(latexHead(table.columns[i], columns[i]));
+  }
+  const std::string environment = wraps ? "tabularx" : "tabular";
   std::string text =
-      "% needs \\usepackage{booktabs}\n\\begin{tabular}{" + columns + "}\n\\toprule\n";
-  text += latexRow(table.columns) + "\\midrule\n";
-  for (const auto& row : table.rows) text += latexRow(row);
-  return text + "\\bottomrule\n\\end{tabular}\n";
+      fmt::format("% needs \\usepackage{{booktabs{}}}\n\\begin{{{}}}{}{{{}}}\n",
+                  wraps ? ",tabularx" : "", environment, wraps ? "{\\linewidth}" : "", alignment);
+  text += "\\toprule\n" + latexRow(heads) + "\\midrule\n";
+  for (const auto& row : table.rows) {
+    std::vector<std::string> cells;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      cells.push_back(columns[i].wraps ? breakable(latexCell(row[i])) : latexCell(row[i]));
+    text += latexRow(cells);
+  }
+  return text + fmt::format("\\bottomrule\n\\end{{{}}}\n", environment);
 }
 
 }  // namespace app

@@ -14,8 +14,9 @@ std::string csvText(const Table& table);
 /// commands, so that pdfLaTeX knows them. Characters that it may not know stand as they are.
 std::string latexText(std::string_view text);
 
-/// A table as a tabular environment of the package booktabs: columns of numbers to the right,
-/// columns of long texts as paragraphs.
+/// A table as a tabular environment with rules of the package booktabs, columns of numbers to the
+/// right. One that is too wide for a page has heads of two lines and, if that is not enough, is a
+/// tabularx of the line's width whose longest texts wrap, set ragged right.
 std::string latexTable(const Table& table);
 
 }  // namespace app

@@ -9,6 +9,7 @@
 #include "report/result.h"
 #include "robot/robot_baxter.h"
 #include "robot/robot_information.h"
+#include "robot/robot_methods.h"
 #include "robot/robot_optimise.h"
 #include "robot_options/robot_program.h"
 #include "robots/laboratory.h"
@@ -59,12 +60,17 @@ class Robot : public Command {
     report.title = fmt::format("Information about the {}", robot_);
     ExitStatus status;
     if (convergence_) {
-      status = tellConvergence(experiment(), context, summary, report);
+      status =
+          tellConvergence(info::robot::plannedExperiment(experiment()), context, summary, report);
+      sayConvergence(experiment(), context.seed, summary.methods());
     } else if (optimise) {
       status = optimiseRobot(request(), warmStart_, context, summary, report, folder);
     } else {
       const std::optional<int> trials = boundOnly_ ? std::optional<int>() : trials_;
-      status = tellInformation(experiment(), trials, context, summary, report);
+      const info::PlannedExperiment plan = info::robot::plannedExperiment(experiment());
+      status = tellInformation(plan, trials, context, summary, report);
+      const bool simulates = trials && status == ExitStatus::done;
+      sayInformation(experiment(), plan, simulates ? *trials : 0, context.seed, summary.methods());
     }
     deliver(context, summary, report, folder);
     return status;
@@ -273,12 +279,12 @@ class Robot : public Command {
     return r;
   }
 
-  info::PlannedExperiment experiment() const {
-    return info::robot::plannedExperiment({.pendulum = pendulum(),
-                                           .amplitude = amplitude_,
-                                           .period = period_,
-                                           .bothMasses = unknown_ != "m1,c",
-                                           .undamped = undamped_});
+  info::robot::ExperimentRequest experiment() const {
+    return {.pendulum = pendulum(),
+            .amplitude = amplitude_,
+            .period = period_,
+            .bothMasses = unknown_ != "m1,c",
+            .undamped = undamped_};
   }
 
   std::string robot_;

@@ -6,6 +6,7 @@
 
 #include "options/number_rules.h"
 #include "output/text.h"
+#include "robot/robot_methods.h"
 #include "robot/robot_search.h"
 
 namespace app {
@@ -188,6 +189,7 @@ ExitStatus runBaxter(BaxterRequest request, const CommandContext& context, Summa
   summarise(found, request, summary);
   writeTables(found.trials, folder);
   reportBaxter(found.trials, request, report);
+  sayStringLength(request, found, summary.methods());
   return ExitStatus::done;
 }
 

@@ -161,6 +161,10 @@ void reportBaxter(const std::vector<BaxterTrial>& trials, const BaxterRequest& r
       numberText(request.duration), numberText(1000 * worst, 3), numberText(request.trueLength),
       without, trials.size(), with);
   report.mainFigure = estimatesFigure(trials, request.trueLength);
+  report.details.emplace_back(
+      Section{"Task",
+              "The ball is swung into a box, planned with the initial and with the estimated "
+              "length; the true string decides."});
   report.details.emplace_back(task);
 
   const BaxterTrial& low = nearest(trials, 0.35);
@@ -181,6 +185,9 @@ void reportBaxter(const std::vector<BaxterTrial>& trials, const BaxterRequest& r
         .svg = swingDrawing(high.withEstimation, box),
         .caption = yesNo(high.withEstimation)});
 
+  report.details.emplace_back(
+      Section{"Course of a trial",
+              "What the arm did and measured, and how its information about the length grew."});
   report.details.emplace_back(Figure{
       .title = fmt::format("Force, initial length {:.3f} m", low.initialLength),
       .xLabel = "Time [s]",

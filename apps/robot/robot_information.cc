@@ -60,6 +60,10 @@ void simulate(const CommandContext& context, const info::PlannedExperiment& plan
   summary.set("trials", trials);
   summary.set("trials_converged", result.converged);
   summary.set("trials_covariance", upperTriangle(result.covariance, namesOf(plan)));
+  report.details.emplace_back(
+      Section{"Simulated experiments",
+              "How estimates from simulated experiments scatter; their covariance should be about "
+              "the bound."});
   report.details.emplace_back(Paragraph{
       fmt::format("{} simulated experiments with independent noise, each estimated from an initial "
                   "guess drawn between 0 and 2 times the true values; {} estimates converged.",
@@ -80,6 +84,10 @@ ExitStatus tellInformation(const info::PlannedExperiment& plan, std::optional<in
   summary.set("information", upperTriangle(matrix, names));
   summary.set("determined_directions", verdict.rank);
   summary.set("findings", verdict.sentences);
+  report.details.emplace_back(
+      Section{"Information",
+              "What one experiment tells of the parameters; its inverse, where it exists, is the "
+              "least covariance of unbiased estimates."});
   report.details.emplace_back(matrixTable("Fisher information", matrix, plan));
   if (verdict.rank < static_cast<Eigen::Index>(names.size())) {
     report.verdict = fmt::format("{}.", fmt::join(verdict.sentences, "; "));

@@ -45,7 +45,10 @@ void tellLaboratory(const info::robot::LaboratoryComparison& found, const Thesis
                              {"median_error_initial", pairOf(slow.medianError)},
                              {"median_error_optimised", pairOf(fast.medianError)}});
 
-  report.details.emplace_back(Section{"Simulated laboratory"});
+  report.details.emplace_back(Section{
+      "Simulated laboratory",
+      "Estimates from data with effects that the model lacks: the better motion should still give "
+      "the smaller error."});
   report.details.emplace_back(Paragraph{fmt::format(
       "The data are simulated with effects that the model lacks: initial angle {}° out of the "
       "plane, dry friction of {} N m, lag of the cart's speed of {} s, disturbance of its "

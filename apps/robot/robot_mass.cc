@@ -44,6 +44,11 @@ void tellSuspendedMass(const MotionResult& found, const CommandContext& context,
 
   report.mainFigure = stateFigure("Motion", "Angle [rad]", found, {{"string", 1}});
   report.details.emplace_back(
+      Section{"Information",
+              "How well the two parameters can be told apart: κ is the condition number of the "
+              "information, λ1 and λ2 are its eigenvalues, beside the numbers of Wilson's "
+              "thesis."});
+  report.details.emplace_back(
       Table{.title = "Initial and optimised motion",
             .columns = {"", "start", "optimised", "thesis"},
             .rows = {{"κ", numberText(before[1] / before[0]), numberText(after[1] / after[0]),
@@ -53,9 +58,15 @@ void tellSuspendedMass(const MotionResult& found, const CommandContext& context,
                      {"iterations of gradient descent", count(slow), count(fast), "> 1000 to 27"},
                      {"iterations of iterated least squares", count(squaresSlow.iterations),
                       count(squaresFast.iterations), "5 to 3"}}});
+  report.details.emplace_back(informationFigure(found));
+  report.details.emplace_back(
+      Section{"Motion of the cart", "What the search changed; dashed lines are before it."});
   report.details.emplace_back(stateFigure("Cart", "Position [m]", found, {{"cart", 0}}));
   report.details.emplace_back(inputFigure("Cart acceleration [m/s²]", found));
-  report.details.emplace_back(informationFigure(found));
+  report.details.emplace_back(
+      Section{"Estimation",
+              "The cost of the estimator over both parameters, and its way to the minimum: a long "
+              "valley means that a combination of them is hardly determined."});
   const auto map = [&](const char* title, const info::robot::ExactEstimates& exact) {
     report.details.emplace_back(
         basinFigure({title, {{0.06, 0.18}, {0.3, 1.0}}, Vector2d(0.12, 0.50)}, exact.problem,

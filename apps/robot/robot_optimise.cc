@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "robot/robot_methods.h"
+
 namespace app {
 namespace {
 
@@ -40,6 +42,7 @@ ExitStatus optimiseRobot(MotionRequest request, const std::string& warmStart,
     tellPendulum(found, context, summary, report);
   }
   tellSearch(found, summary, report, folder);
+  sayMotion(request, found, summary.methods());
   return statusOf(found, report);
 }
 

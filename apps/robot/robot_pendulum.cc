@@ -49,6 +49,10 @@ void tellPendulum(const MotionResult& found, const CommandContext& context, Summ
   summary.set("trials_converged", {{"initial", slow.converged}, {"optimised", fast.converged}});
 
   report.mainFigure = stateFigure("Motion", "Angle [rad]", found, {{"link 1", 1}, {"link 2", 2}});
+  report.details.emplace_back(
+      Section{"Information",
+              "What one experiment tells of the parameters: bounds from the Fisher information, "
+              "and estimates from simulated experiments, beside the numbers of Wilson's thesis."});
   Table table{
       .title = "Variances and covariance of the estimates from one experiment",
       .columns = {"", "m1 m1 [kg²]", "m1 c [kg·1e-3 kg m²/s]", "c c [(1e-3 kg m²/s)²]", "thesis"},
@@ -63,9 +67,12 @@ void tellPendulum(const MotionResult& found, const CommandContext& context, Summ
             .columns = {"", "here", "thesis"},
             .rows = {{"factor of λ_min", numberText(factor), "1040"},
                      {"iterations", std::to_string(found.search.iterations), "36"}}});
+  report.details.emplace_back(informationFigure(found));
+  report.details.emplace_back(
+      Section{"Motion of the cart", "What the search changed; dashed lines are before it."});
   report.details.emplace_back(stateFigure("Cart", "Position [m]", found, {{"cart", 0}}));
   report.details.emplace_back(inputFigure("Cart acceleration [m/s²]", found));
-  report.details.emplace_back(informationFigure(found));
+  sayHistograms(report);
   report.details.emplace_back(histogram("m1 [kg], start", slow, 0, truthBefore[0]));
   report.details.emplace_back(histogram("m1 [kg], optimised", fast, 0, truthAfter[0]));
   report.details.emplace_back(histogram("c [1e-3 kg m²/s], start", slow, 1, truthBefore[1]));

@@ -6,6 +6,7 @@
 #include "output/text.h"
 #include "robot/robot_figures.h"
 #include "robot/robot_optimise.h"
+#include "robot/robot_trials.h"
 
 namespace app {
 
@@ -38,6 +39,10 @@ void tellPendulumInSteps(const MotionResult& found, int stepsPerSample, Summary&
   summary.set("ms_per_iteration_continuous", continuous);
 
   report.mainFigure = stateFigure("Motion", "Angle [rad]", found, {{"link 1", 0}, {"link 2", 1}});
+  report.details.emplace_back(
+      Section{"Information",
+              "What one experiment tells of the parameters: the information and its bounds, and "
+              "estimates from simulated experiments, beside the numbers of Wilson's thesis."});
   report.details.emplace_back(Table{
       .title = fmt::format(
           "Exact information of 250 steps of 0.02 s, {} samples per second, c in 10e-3 kg m²/s",
@@ -64,7 +69,10 @@ void tellPendulumInSteps(const MotionResult& found, int stepsPerSample, Summary&
   row("Monte Carlo, optimised", fast.covariance);
   report.details.emplace_back(trials);
   report.details.emplace_back(informationFigure(found));
+  report.details.emplace_back(
+      Section{"Motion of the cart", "What the search changed; dashed lines are before it."});
   report.details.emplace_back(inputFigure("Cart position [m]", found));
+  sayHistograms(report);
   report.details.emplace_back(histogram("m1 [kg], start", slow, 0, slowPlan.truth[0]));
   report.details.emplace_back(histogram("m1 [kg], optimised", fast, 0, fastPlan.truth[0]));
   report.details.emplace_back(histogram("c [10e-3 kg m²/s], start", slow, 1, slowPlan.truth[1]));

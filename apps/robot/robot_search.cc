@@ -130,7 +130,10 @@ void tellSearch(const MotionResult& found, Summary& summary, Report& report, Out
   summary.set("cost_initial", found.search.costs.front());
   summary.set("cost_optimised", found.search.costs.back());
   summary.set("why_it_stopped", info::describe(found.search.why));
-  report.details.emplace_back(Section{"Progress of the search"});
+  report.details.emplace_back(Section{
+      "Progress of the search",
+      "The cost that the search lowers, iteration by iteration; a flat end means that it found a "
+      "minimum."});
   if (found.robust) tellRobust(*found.robust, summary, report);
   report.details.emplace_back(costFigure(found.search));
   folder.write("search.json",

@@ -17,6 +17,13 @@ nlohmann::ordered_json rowsOf(const MatrixXd& matrix) {
   return rows;
 }
 
+void sayHistograms(Report& report) {
+  report.details.emplace_back(
+      Section{"Simulated experiments",
+              "How estimates from simulated experiments scatter about the true values; if the "
+              "bound is reached, the histogram follows the dashed curve."});
+}
+
 Figure histogram(const std::string& name, const info::MonteCarloResult& result, Index parameter,
                  double truth) {
   const double sigma = std::sqrt(result.bound(parameter, parameter));

@@ -11,6 +11,9 @@ namespace app {
 /// A matrix as a list of its rows.
 nlohmann::ordered_json rowsOf(const Eigen::MatrixXd& matrix);
 
+/// The heading of histograms of estimates.
+void sayHistograms(Report& report);
+
 /// Histogram of the estimates of one parameter about the true value, in standard deviations of the
 /// bound.
 Figure histogram(const std::string& name, const info::MonteCarloResult& result,

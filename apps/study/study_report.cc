@@ -38,7 +38,7 @@ std::string fell(const StudyFindings& f, const char* before, const char* after, 
                      numberText(*from, 3), numberText(*to, 3));
 }
 
-std::string listed(const std::map<std::string, int>& counts) {
+std::string countsInWords(const std::map<std::string, int>& counts) {
   std::vector<std::string> named;
   for (const auto& [name, count] : counts) named.push_back(fmt::format("{} {}", count, name));
   return fmt::format("{}", fmt::join(named, ", "));
@@ -46,12 +46,13 @@ std::string listed(const std::map<std::string, int>& counts) {
 
 std::string verdictOf(const StudyFindings& f) {
   std::string text =
-      fmt::format("Of {} subjects: {}.", f.rows.size(), listed(countsOf(f, "status")));
+      fmt::format("Of {} subjects: {}.", f.rows.size(), countsInWords(countsOf(f, "status")));
   if (!f.study.parameters.empty()) {
     text += fell(f, "rmse_train_before_deg", "rmse_train_deg", "training");
     text += fell(f, "rmse_held_out_before_deg", "rmse_held_out_deg", "held-out");
   }
-  if (f.study.discover) text += fmt::format(" Verdicts: {}.", listed(countsOf(f, "verdict")));
+  if (f.study.discover)
+    text += fmt::format(" Verdicts: {}.", countsInWords(countsOf(f, "verdict")));
   return text;
 }
 

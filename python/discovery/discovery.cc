@@ -171,7 +171,8 @@ py::object listEffects(const bio::Model& model, const Names& coordinate,
 py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                     const std::vector<bio::Trial>& holdOut, const std::optional<GivenNoise>& noise,
                     const std::vector<std::string>& without, const OwnEffects& own, int maxEffects,
-                    std::optional<double> inputScatter, const py::object& progress,
+                    std::optional<double> inputScatter,
+                    const std::map<std::string, double>& initial, const py::object& progress,
                     const Names& coordinate, const std::map<std::string, double>& lock,
                     const std::string& integrator, std::optional<double> firstStep) {
   const SystemChoice choice = systemChoice(model, trials, coordinate, lock, integrator, firstStep);
@@ -191,6 +192,7 @@ py::object discover(const bio::Model& model, std::vector<bio::Trial> trials,
                                         {}};
   asked.problem.simulation = choice.simulation();
   asked.problem.simulation.duration = 1;
+  asked.problem.initial = initial;
   asked.problem.without = without;
   asked.problem.own = effectsIn(own);
   asked.search = searchOptions(maxEffects, inputScatter);
@@ -235,7 +237,8 @@ void defineDiscovery(py::module_& module) {
   defineWithChoice(module, "discover", &discover, docstrings::discover, "model"_a, "trials"_a,
                    py::kw_only(), "hold_out"_a = std::vector<bio::Trial>(), "noise"_a = py::none(),
                    "without"_a = std::vector<std::string>(), "effects"_a = std::vector<FileName>(),
-                   "max_effects"_a = 3, "input_scatter"_a = py::none(), "progress"_a = false);
+                   "max_effects"_a = 3, "input_scatter"_a = py::none(),
+                   "initial"_a = std::map<std::string, double>(), "progress"_a = false);
 }
 
 }  // namespace python

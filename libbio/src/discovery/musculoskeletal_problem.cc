@@ -157,6 +157,8 @@ MusculoskeletalProblem::MusculoskeletalProblem(const Model& model, const SystemO
   encompassing_.forget(unsaturated(encompassing_, withFlatTops(trials)));
   encompassing_.forget(withoutElectrode(encompassing_, neverRecorded(trials)));
   quantities_ = encompassing_.quantities();
+  if (!options_.initial.empty())
+    (void)startCoordinates(trials.front(), encompassing_.system(), options_.initial);
   for (Trial& trial : trials) addTrial(withSynergists(std::move(trial), encompassing_));
   latentLag_ = activationLag();
   separateWhatTrialsTellApart();
@@ -236,7 +238,10 @@ void MusculoskeletalProblem::addStarts(OfTrial& trial) {
     const auto& sensors = encompassing_.sensors();
     const auto sensor = std::find(sensors.begin(), sensors.end(), what);
     const MeasuredChannel* channel = trial.trial.measurementOf(what);
-    const bool isMeasured = sensor != sensors.end() && channel && channel->times.size() > 0;
+    const auto given = options_.initial.find(observed.name);
+    const bool isGiven = given != options_.initial.end();
+    const bool isMeasured =
+        !isGiven && sensor != sensors.end() && channel && channel->times.size() > 0;
     Start start{i, 0, 0, isMeasured ? static_cast<int>(sensor - sensors.begin()) : -1};
     double shown = 0;
     if (isMeasured) {
@@ -244,10 +249,12 @@ void MusculoskeletalProblem::addStarts(OfTrial& trial) {
       shown = std::abs(initialSpeedShown(times, channel->values, 0.3 * length));
     }
     const double fastest = std::max((turns ? 10 : 16) * units.speedSize, 3 * shown);
-    const double first = isMeasured ? channel->values[0] : observed.defaultValue;
+    const double first = isGiven      ? given->second
+                         : isMeasured ? channel->values[0]
+                                      : observed.defaultValue;
     start.angle = addOwnQuantity(
         observed.name, {"", turns ? "rad" : "m", first, observed.rangeMin, observed.rangeMax,
-                        (isMeasured ? 1 : 10) * options_.startSd * length, false});
+                        (isMeasured || isGiven ? 1 : 10) * options_.startSd * length, false});
     start.speed = addOwnQuantity(observed.name + ".speed",
                                  {"", turns ? "rad/s" : "m/s", 0, -fastest, fastest,
                                   std::max(options_.speedSd * units.speedSize, shown), false});

@@ -93,7 +93,7 @@ Compared replayed(const MusculoskeletalProblem& data, const Model& model, const 
     SimulationOptions simulation = data.options().simulation;
     simulation.step = step;
     simulation.progress = {};
-    StartPoint point = beginningOf(trial, model, system, {}).point;
+    StartPoint point = beginningOf(trial, model, system, data.options().initial).point;
     for (const TrialStart& start : starts) {
       point.q[system.skeleton().indexOf(start.coordinate)] = start.value;
       point.qDot[system.skeleton().indexOf(start.coordinate)] = start.speed;

@@ -121,15 +121,6 @@ Eigen::VectorXd rowTimes(const std::vector<ElectrodeTrace>& traces, const EmgCon
       rows, [&](Eigen::Index i) { return begin + static_cast<double>(i) / config.outputRate; });
 }
 
-// Limits a measured channel to what the rows can show.
-MeasuredOptions withoutAliasing(MeasuredOptions options, double rate, double outputRate) {
-  const double limit = 0.4 * outputRate;
-  if (rate <= outputRate || (options.lowPass && *options.lowPass <= limit)) return options;
-  options.lowPass = limit;
-  options.lowPassOrder = 6;
-  return options;
-}
-
 Eigen::MatrixXd columnsAt(const Recording& recording, const EmgConfig& config,
                           const Eigen::VectorXd& times) {
   Eigen::MatrixXd out(times.size(), static_cast<Eigen::Index>(config.columns.size()));
@@ -206,6 +197,14 @@ Channel withoutShortGaps(const Channel& channel, const EmgConfig& config) {
 }
 
 }  // namespace
+
+MeasuredOptions withoutAliasing(MeasuredOptions options, double rate, double outputRate) {
+  const double limit = 0.4 * outputRate;
+  if (rate <= outputRate || (options.lowPass && *options.lowPass <= limit)) return options;
+  options.lowPass = limit;
+  options.lowPassOrder = 6;
+  return options;
+}
 
 ElectrodeTrace emgEnvelope(const Channel& recorded, const EmgConfig& config) {
   const Channel channel = withoutShortGaps(recorded, config);

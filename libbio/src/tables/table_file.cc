@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "bio/tables/file_error.h"
+#include "bio/tables/table_text.h"
 #include "tables/cells.h"
 #include "tables/formats/foreign_format.h"
 #include "tables/text_file.h"
@@ -333,7 +334,7 @@ Table readTable(const std::filesystem::path& file, TableKind kind) {
   return std::move(reader.table);
 }
 
-void writeTable(const Table& table, const std::filesystem::path& file) {
+std::string tableText(const Table& table, const std::filesystem::path& file) {
   checkWritable(table, file.string());
   const bool csv = isCsv(file);
   const char separator = csv ? ',' : '\t';
@@ -365,7 +366,11 @@ void writeTable(const Table& table, const std::filesystem::path& file) {
     }
     text.push_back('\n');
   }
-  writeTextFile(file, fmt::to_string(text));
+  return fmt::to_string(text);
+}
+
+void writeTable(const Table& table, const std::filesystem::path& file) {
+  writeTextFile(file, tableText(table, file));
 }
 
 bool hasColumn(const Table& table, const std::string& column) {

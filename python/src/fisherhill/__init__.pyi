@@ -2943,6 +2943,7 @@ def discover(
     effects: Sequence[_File] = [],
     max_effects: int = 3,
     input_scatter: float | None = None,
+    initial: dict[str, float] = {},
     progress: _Progress = False,
     coordinate: str | Sequence[str] = [],
     lock: dict[str, float] = {},
@@ -2971,6 +2972,9 @@ def discover(
     input_scatter : float, optional
         Noise of the EMG that is tolerated, as a fraction of each muscle's moment, >= 0; a larger residual
         counts as a missing effect. Default: 0.075.
+    initial : dict
+        {coordinate: initial value [rad] or [m]}, at rest: where the search expects every trial to begin.
+        Default: the first measured value.
     progress : bool or callable
         True: a bar (tqdm); a function: called with the fraction done, 0 to 1, now and then; what it
         raises ends the computation.

@@ -109,4 +109,38 @@ TEST(DiscoverCommand, NamesTheDampingThatIsHiddenAddsItAndFindsNothingMore) {
   EXPECT_EQ(nlohmann::json::parse(again.out)["verdict"], "none");
 }
 
+// The recording begins at 63.3°.
+TEST(DiscoverCommand, ExpectsTheTrialToBeginWhereInitialSays) {
+  const ScratchFolder scratch;
+  const auto startFrom = [&](const std::string& start) {
+    const std::string out = (scratch / ("out" + start)).string();
+    const ProgramResult result =
+        runFisherHill({"discover", elbow, train, "--noise-deg", "0.5", "--max-effects", "1",
+                       "--initial", "elbow_flexion=" + start, "--out", out});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const auto verdict = nlohmann::json::parse(contentOf(out + "/verdict.json"));
+    const ProgramResult replayed =
+        runFisherHill({"replay", elbow, train, "--initial", "elbow_flexion=" + start, "--json"});
+    EXPECT_NEAR(nlohmann::json::parse(replayed.out)["rms_error_deg"].get<double>(),
+                verdict["trials"][0]["rmse_nominal_deg"].get<double>(), 1e-9);
+    for (const auto& fitted : verdict["fitted_parameters"]) {
+      if (fitted["name"] == "trial1.initial.elbow_flexion")
+        return std::pair(fitted["nominal"].get<double>(), fitted["estimate"].get<double>());
+    }
+    throw std::runtime_error("no start was fitted");
+  };
+  const auto [near, nearEstimate] = startFrom("63deg");
+  const auto [far, farEstimate] = startFrom("66deg");
+  EXPECT_NEAR(near, 63 * 3.14159265358979 / 180, 1e-12);
+  EXPECT_NEAR(far, 66 * 3.14159265358979 / 180, 1e-12);
+  EXPECT_GT(std::abs(farEstimate - nearEstimate), 1e-5);
+}
+
+TEST(DiscoverCommand, RefusesAStartOfWhatIsNotFree) {
+  const ProgramResult result =
+      runFisherHill({"discover", elbow, train, "--initial", "shoulder_elv=10deg"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("start of 'shoulder_elv': must be a free coordinate"));
+}
+
 }  // namespace

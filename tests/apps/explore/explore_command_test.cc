@@ -40,8 +40,10 @@ TEST(ExploreCommand, WritesOnePageThatHoldsEverything) {
   for (const char* outside : {"src=\"http", "href=\"http", "@import", "connect-src"})
     EXPECT_THAT(page, Not(HasSubstr(outside)));
   const nlohmann::json data = dataOf(page);
-  EXPECT_EQ(data["files"][model].get<std::string>(), contentOf(std::string(FISHERHILL_SOURCE_DIR "/") + model));
-  EXPECT_EQ(data["files"][slow].get<std::string>(), contentOf(std::string(FISHERHILL_SOURCE_DIR "/") + slow));
+  EXPECT_EQ(data["files"][model].get<std::string>(),
+            contentOf(std::string(FISHERHILL_SOURCE_DIR "/") + model));
+  EXPECT_EQ(data["files"][slow].get<std::string>(),
+            contentOf(std::string(FISHERHILL_SOURCE_DIR "/") + slow));
   ASSERT_EQ(data["parameters"].size(), 2u);
   EXPECT_EQ(data["parameters"][0]["name"], "TRI.radius");
   EXPECT_EQ(data["parameters"][1]["unit"], "kg");
@@ -88,6 +90,32 @@ TEST(ExploreCommand, RefusesWhatAPageCannotDo) {
               HasSubstr("must be > 0"));
   EXPECT_THAT(refused({"explore", model, slow, "--verdict", "models", "--out", out}),
               HasSubstr("verdict.json"));
+}
+
+// The page's core reads trials as replay does.
+TEST(ExploreCommand, CarriesPrescribedMotionsAsTheyAreSmoothed) {
+  const ScratchFolder scratch;
+  std::string rows = "time,BRA,BIClong,elbow_flexion_deg,pro_sup_deg\n";
+  for (int k = 0; k <= 80; ++k) {
+    rows += std::to_string(0.01 * k) + ",0.1,0.08," + std::to_string(40 + 0.2 * k) + "," +
+            std::to_string(10 + 0.3 * k + (k % 2 ? 3 : -3)) + "\n";
+  }
+  const std::string trial = scratch.file("trial.csv", rows), out = (scratch / "out").string();
+  const ProgramResult result =
+      runFisherHill({"explore", model, trial, "--prescribe", "pro_sup", "--prescribe-cutoff", "20",
+                     "--parameters", "BRA.max_isometric_force", "--out", out});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json data = dataOf(contentOf(out + "/report.html"));
+  EXPECT_THAT(data["options"].get<std::string>(), HasSubstr("--prescribe-cutoff 20"));
+  const std::string carried = scratch.file("carried.csv", data["files"][trial].get<std::string>());
+  const auto errorOf = [](const std::string& file, std::vector<std::string> more) {
+    std::vector<std::string> words = {"replay", model, file, "--prescribe", "pro_sup", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return nlohmann::json::parse(runFisherHill(words).out)["rms_error_deg"].get<double>();
+  };
+  const double smoothed = errorOf(trial, {"--prescribe-cutoff", "20"});
+  EXPECT_NEAR(errorOf(carried, {}), smoothed, 1e-9);
+  EXPECT_GT(std::abs(errorOf(trial, {}) - smoothed), 1e-6);
 }
 
 TEST(ReplayWithSet, TakesOtherValuesOfParameters) {

@@ -101,6 +101,14 @@ TEST(Report, KeepsPicturesInsideThePage) {
   EXPECT_THROW(renderReport(report, Summary({})), std::invalid_argument);
 }
 
+TEST(Report, KeepsNumbersOfTablesOnOneLine) {
+  Report report = smallReport();
+  report.details = {Table{"", {"a", "b"}, {{"1.7e-05", "2.71e-4, -1.5 of case-05<"}}}};
+  EXPECT_THAT(renderReport(report, Summary({})),
+              HasSubstr("<td><span class=\"number\">1.7e-05</span></td><td><span "
+                        "class=\"number\">2.71e-4</span>, -1.5 of case-05&lt;</td>"));
+}
+
 TEST(Report, TakesTextLiterally) {
   Report report = smallReport();
   report.title = "<b>&\"";

@@ -21,11 +21,47 @@ TEST(TableText, CsvQuotesWhatNeedsIt) {
 
 TEST(TableText, LatexSetsNumbersAndEscapes) {
   const std::string latex = latexTable(table);
-  EXPECT_THAT(
-      latex,
-      HasSubstr("\\begin{tabular}{lrp{0.45\\linewidth}}\n\\toprule\nname & value [N$\\cdot$m] & "
-                "note \\\\\n\\midrule\nTRI.radius & $-1.5$ & 50 \\% of R\\_0 \\\\\n"));
+  EXPECT_THAT(latex,
+              HasSubstr("\\begin{tabularx}{\\linewidth}{lr>{\\raggedright\\arraybackslash}X}\n"
+                        "\\toprule\nname & value [N$\\cdot$m] & note \\\\\n\\midrule\n"
+                        "TRI.radius & $-1.5$ & 50 \\% of R\\_\\allowbreak{}0 \\\\\n"));
   EXPECT_THAT(latex, HasSubstr("& $5.445\\cdot10^{-5}$ &"));
+  EXPECT_THAT(latex, testing::StartsWith("% needs \\usepackage{booktabs,tabularx}\n"));
+  EXPECT_THAT(latex, testing::EndsWith("\\bottomrule\n\\end{tabularx}\n"));
+}
+
+TEST(TableText, LatexWrapsOnlyWhereATableIsTooWide) {
+  const std::string note(60, 'x');
+  const Table narrow{"", {"a", "note"}, {{"1", note}}};
+  EXPECT_THAT(latexTable(narrow), HasSubstr("\\begin{tabular}{rl}\n"));
+  // the longest wraps, and the other only if that is not enough
+  const Table one{"", {"short", "long"}, {{std::string(40, 'y'), note}}};
+  EXPECT_THAT(latexTable(one), HasSubstr("{l>{\\raggedright\\arraybackslash}X}\n"));
+  const Table both{"", {"short", "long", "a"}, {{note + "y", note, std::string(30, 'z')}}};
+  EXPECT_THAT(latexTable(both), HasSubstr("{>{\\raggedright\\arraybackslash}X>{\\raggedright"
+                                          "\\arraybackslash}Xl}\n"));
+  // characters count, not bytes
+  std::string greek;
+  for (int i = 0; i < 70; ++i) greek += "λ";
+  EXPECT_THAT(latexTable({"", {"a", "b"}, {{"1", greek}}}), HasSubstr("\\begin{tabular}{rl}\n"));
+}
+
+TEST(TableText, LatexBreaksLongHeadsOfNumbers) {
+  const Table wide{"",
+                   {"integrator", "Newton iterations per step", "energy error of the run [J]",
+                    "difference from the reference [deg]"},
+                   {{"vi", "2.1", "0.01", "0.3"}}};
+  EXPECT_THAT(latexTable(wide),
+              HasSubstr("{lrrr}\n\\toprule\nintegrator & "
+                        "\\shortstack[r]{Newton iterations\\\\per step} & "
+                        "\\shortstack[r]{energy error\\\\of the run [J]} & "
+                        "\\shortstack[r]{difference from\\\\the reference [deg]} \\\\\n"));
+}
+
+TEST(TableText, LatexTakesNoBracketForAnArgument) {
+  const Table brackets{"", {"[N]", "*"}, {{"[0, 1]", "x"}, {"*", "y"}}};
+  EXPECT_THAT(latexTable(brackets), HasSubstr("\\toprule\n{}[N] & * \\\\\n\\midrule\n{}[0, 1] & x "
+                                              "\\\\\n{}* & y \\\\\n"));
 }
 
 TEST(TableText, LatexTakesNothingForACommand) {

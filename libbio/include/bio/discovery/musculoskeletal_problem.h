@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ struct MusculoskeletalProblemOptions : CatalogueChoice {
   double speedSd = 0.1;       ///< prior sd of each trial's initial speed [rad/s] > 0, or an
                               ///< eighth of it [m/s]; of one that starts in motion: as large
                               ///< as that speed
+  /// Initial values of free coordinates [rad] or [m], at rest, that the prior of every trial's
+  /// initial state has as its mean; the others are as measured.
+  std::map<std::string, double> initial = {};
   bool trialsAreCut = false;  ///< they are parts of those in the files
   bool usableSeries = true;   ///< refuse measured series that requireUsable refuses
 };
@@ -55,8 +59,9 @@ std::vector<std::string> coordinatesInQuestion(const std::vector<std::string>& f
 ///
 /// Each trial is simulated over its rows from its own initial state, driven by its excitations, its
 /// external torques and the course of prescribed coordinates. The prior mean of an initial angle is
-/// the first measured value as the sensor, which may be in error, shows it; the default of one that
-/// is not measured, with ten times the deviation. SensedMotion gives what the sensors show.
+/// the one given, as it is, whatever a sensor shows; else the first measured value as the sensor,
+/// which may be in error, shows it; the default of one that is not measured, with ten times the
+/// deviation. SensedMotion gives what the sensors show.
 /// All derivatives are exact: those of parameters, forces and latent nodes by the implicit function
 /// theorem (coupled_sensitivity.h), those of EMG and sensor by the chain rule. Before the start of
 /// a trial, which a clock offset may require, the coordinate is extrapolated with its initial
@@ -77,8 +82,8 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
   using Candidate = info::discover::Candidate;
 
   /// @param coordinates those in question; missing samples have no time
-  /// @throws std::invalid_argument what EncompassingModel and ObservedMotion throw, no trial, a
-  ///   trial without a measured value, an integrator without sensitivities, an option out of range,
+  /// @throws std::invalid_argument what EncompassingModel, ObservedMotion and startCoordinates
+  ///   throw, no trial, a trial without a measured value, an integrator without sensitivities, an option out of range,
   ///   a known mass in the hand of a model without a body to carry it
   MusculoskeletalProblem(const Model& model, const SystemOptions& system,
                          const CoordinateNames& coordinates, std::vector<Trial> trials,

@@ -104,13 +104,19 @@ struct EmgResult {
 /// "0.7 of electrode 'biceps'", "the mean of …", "a constant 0.05"
 std::string sourceOf(const UnrecordedMuscle& muscle);
 
+/// How a measured channel is filtered before it becomes rows: as `options` say; one that is faster
+/// than the rows passes a zero-lag low-pass of order 6 at 0.4 of their rate, unless its own is
+/// lower.
+/// @param rate        of the channel [Hz]
+/// @param outputRate  of the rows [Hz]
+MeasuredOptions withoutAliasing(MeasuredOptions options, double rate, double outputRate);
+
 /// Envelope of one channel through the first stages (up to the low-pass), in the channel's unit.
 /// @throws std::invalid_argument for gaps, a signal shorter than one period of the cut-off, edges
 /// above fs/2
 ElectrodeTrace emgEnvelope(const Channel& channel, const EmgConfig& config);
 
-/// The complete processing. A measured channel that is faster than the rows passes a zero-lag
-/// low-pass of order 6 at 0.4 of their rate, unless its own is lower. The excitation of a muscle is
+/// The complete processing. Measured channels pass withoutAliasing(). The excitation of a muscle is
 /// the weighted sum of the excitations of its electrodes, clipped to 1.
 /// @throws std::invalid_argument naming channel or setting, value, unit and rule
 EmgResult excitationsFromEmg(const Recording& recording, const EmgConfig& config);
