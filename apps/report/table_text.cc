@@ -222,20 +222,24 @@ std::string breakable(std::string latex) {
   return latex;
 }
 
+/// What follows the end of a line: a bracket or a star there would be an argument of that.
+std::string beginningOfLine(const std::string& latex) {
+  return latex.starts_with('[') || latex.starts_with('*') ? "{}" + latex : latex;
+}
+
 std::string latexHead(const std::string& head, const LatexColumn& column) {
   if (!column.twoLines) return latexText(head);
   const std::size_t at = breakOf(head);
   return fmt::format("\\shortstack[{}]{{{}\\\\{}}}", column.numbers ? 'r' : 'l',
-                     latexText(head.substr(0, at)), latexText(head.substr(at + 1)));
+                     latexText(head.substr(0, at)),
+                     beginningOfLine(latexText(head.substr(at + 1))));
 }
 
-/// Cells that are LaTeX as a row. A bracket or a star at its beginning would be an argument of what
-/// stands before it.
+/// Cells that are LaTeX as a row.
 std::string latexRow(const std::vector<std::string>& cells) {
   std::string row;
   for (std::size_t i = 0; i < cells.size(); ++i) row += (i > 0 ? " & " : "") + cells[i];
-  if (row.starts_with('[') || row.starts_with('*')) row.insert(0, "{}");
-  return row + " \\\\\n";
+  return beginningOfLine(row) + " \\\\\n";
 }
 
 }  // namespace
