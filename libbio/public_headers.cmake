@@ -178,6 +178,7 @@ target_sources(bio PUBLIC FILE_SET HEADERS BASE_DIRS include FILES
   include/bio/tables/recording.h
   include/bio/tables/study_file.h
   include/bio/tables/table_file.h
+  include/bio/tables/table_text.h
   include/bio/tables/trial.h
   include/bio/review/trial_review.h
   include/bio/tables/trial_table.h
