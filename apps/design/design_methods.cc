@@ -12,11 +12,6 @@
 namespace app {
 namespace {
 
-/// "one iteration", "10 iterations"
-std::string counted(int count, const char* one, const char* many) {
-  return count == 1 ? std::string(one) : fmt::format("{} {}", count, many);
-}
-
 void sayMeasured(const std::vector<bio::ChannelCandidate>& observed, double period,
                  const bio::Model& model, Methods& methods) {
   methods.say(Methods::Part::inference,
@@ -63,16 +58,18 @@ void saySearch(const DesignOptions& typed, bool hasGradients, Methods& methods) 
   std::vector<std::string> stages;
   std::vector<Publication> cited;
   if (settings.candidates > 0)
-    stages.push_back(counted(settings.candidates, "one random design", "random designs"));
+    stages.push_back(counted(static_cast<std::size_t>(settings.candidates), "random design"));
   if (settings.generations > 0) {
-    stages.push_back(fmt::format("{} of CMA-ES ({}) from the best of them",
-                                 counted(settings.generations, "one generation", "generations"),
-                                 citation(Publication::hansen2016)));
+    stages.push_back(
+        fmt::format("{} of CMA-ES ({}) from the best of them",
+                    counted(static_cast<std::size_t>(settings.generations), "generation"),
+                    citation(Publication::hansen2016)));
     cited.push_back(Publication::hansen2016);
   }
   if (hasGradients && settings.iterations > 0) {
-    stages.push_back(fmt::format("{} along exact gradients",
-                                 counted(settings.iterations, "one iteration", "iterations")));
+    stages.push_back(
+        fmt::format("{} along exact gradients",
+                    counted(static_cast<std::size_t>(settings.iterations), "iteration")));
   }
   if (stages.empty()) return;
   methods.say(Methods::Part::inference,
@@ -186,10 +183,11 @@ void saySeparation(const SeparatingFindings& f, const DesignOptions& typed, Meth
 void sayDynamometer(const bio::DynamometerPlan& plan, const bio::DynamometerQuestion& question,
                     bool turns, Methods& methods) {
   std::vector<std::string> kinds, efforts, positions;
-  const double unit = turns ? bio::degreesPerRadian : 1000;
+  const bio::ShownUnit unit = bio::positionUnit(turns);
   for (const auto kind : question.kinds) kinds.emplace_back(bio::name(kind));
   for (const double effort : question.efforts) efforts.push_back(numberText(100 * effort));
-  for (const double position : question.positions) positions.push_back(numberText(unit * position));
+  for (const double position : question.positions)
+    positions.push_back(numberText(unit.factor * position));
   const bool contracts = std::any_of(question.kinds.begin(), question.kinds.end(), [](auto kind) {
     return kind != bio::DynamometerExperiment::Kind::passive;
   });
@@ -197,8 +195,7 @@ void sayDynamometer(const bio::DynamometerPlan& plan, const bio::DynamometerQues
       Methods::Part::inference,
       fmt::format("{} experiments on a dynamometer at {} were simulated: {}, at {} {}{}, with {} "
                   "samples per second and independent normal noise of {} {} of the moment.",
-                  plan.candidates, question.coordinate, listed(kinds), listed(positions),
-                  turns ? "deg" : "mm",
+                  plan.candidates, question.coordinate, listed(kinds), listed(positions), unit.name,
                   contracts ? fmt::format(" and efforts of {} % MVC", listed(efforts)) : "",
                   numberText(question.rate), numberText(question.noise), turns ? "N m" : "N"));
   std::vector<std::string> names;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include "bio/design/dynamometer_question.h"
 #include "design/design_options.h"
 #include "design/design_report.h"

@@ -165,7 +165,8 @@ std::optional<Playback> discoverPlayback(const DiscoveryToWrite& discovery,
                      one.driven ? bio::drivenTrial(*one.driven, recorded, repaired) : recorded,
                      {.step = result.found.step, .starts = one.starts});
       }
-      replayed.add("original model", model, recorded, {.step = before, .given = byName(typed.initial)});
+      replayed.add("original model", model, recorded,
+                   {.step = before, .given = byName(typed.initial)});
     }
   }
   return replayed.playback("The motion in three dimensions");

@@ -76,11 +76,10 @@ Table electrodeTable(const bio::EmgResult& result) {
   return table;
 }
 
-/// Whether a remark is about one electrode, which a table says.
-bool isOfElectrode(const std::string& remark, const bio::EmgResult& result) {
-  return std::any_of(result.electrodes.begin(), result.electrodes.end(), [&](const auto& trace) {
-    return remark.starts_with(fmt::format("'{}': ", trace.channel));
-  });
+/// Whether the table of electrodes says the same.
+bool isInTable(const std::string& remark, const bio::EmgResult& result) {
+  return std::any_of(result.electrodes.begin(), result.electrodes.end(),
+                     [&](const auto& trace) { return remark == bio::remarkOn(trace); });
 }
 
 Figure excitationFigure(const bio::EmgResult& result) {
@@ -275,7 +274,7 @@ class Emg : public Command {
         Section{"Processing steps and limitations",
                 "What was done to the recording, and what its excitations cannot show."});
     for (const std::string& remark : result.remarks)
-      if (!isOfElectrode(remark, result)) report.details.emplace_back(Paragraph{remark});
+      if (!isInTable(remark, result)) report.details.emplace_back(Paragraph{remark});
     if (result.measured) {
       report.details.emplace_back(
           Section{"Measured motion", "The angle that simulations will be compared with."});

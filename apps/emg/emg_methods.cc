@@ -12,12 +12,6 @@
 namespace app {
 namespace {
 
-const bio::Channel* channelNamed(const bio::Recording& recording, const std::string& name) {
-  const auto at = std::find_if(recording.channels.begin(), recording.channels.end(),
-                               [&](const bio::Channel& one) { return one.name == name; });
-  return at == recording.channels.end() ? nullptr : &*at;
-}
-
 /// "2000 Hz", or "1000 and 2000 Hz"
 std::string ratesOf(const std::vector<bio::ElectrodeTrace>& electrodes) {
   std::vector<double> rates;
@@ -30,8 +24,7 @@ std::string ratesOf(const std::vector<bio::ElectrodeTrace>& electrodes) {
 }
 
 void sayStages(const bio::EmgConfig& config, const bio::EmgResult& result, Methods& methods) {
-  const std::string electrodes = fmt::format("{} electrode{}", result.electrodes.size(),
-                                             result.electrodes.size() == 1 ? "" : "s");
+  const std::string electrodes = counted(result.electrodes.size(), "electrode");
   if (config.signal == bio::EmgSignal::envelope) {
     methods.say(Methods::Part::data,
                 fmt::format("Envelopes of the EMG of {}, sampled at {}, were used as they "
@@ -74,13 +67,12 @@ std::map<std::string, std::vector<std::string>> normalisations(const bio::EmgCon
   for (const bio::Electrode& electrode : config.electrodes) {
     std::string by;
     if (const auto* mvc = std::get_if<bio::MvcValue>(&electrode.full)) {
-      const std::string recorded = "from ";  // else it is the place in the configuration
-      by = mvc->source.starts_with(recorded)
-               ? fmt::format(
+      by = mvc->recording.empty()
+               ? std::string("the value given for a maximum voluntary contraction")
+               : fmt::format(
                      "the largest envelope of a maximum voluntary contraction ({}), "
                      "processed alike",
-                     std::filesystem::path(mvc->source.substr(recorded.size())).filename().string())
-               : std::string("the value given for a maximum voluntary contraction");
+                     std::filesystem::path(mvc->recording).filename().string());
     } else {
       const double percent = std::get<bio::OwnPercentile>(electrode.full).percent;
       by = percent == 100
@@ -165,14 +157,13 @@ void sayMapping(const bio::EmgConfig& config, Methods& methods) {
 void sayMeasured(const bio::Recording& recording, const bio::EmgConfig& config, Methods& methods) {
   std::vector<bio::MeasuredOptions> all = config.columns;
   if (config.measured) all.insert(all.begin(), *config.measured);
-  for (const bio::MeasuredOptions& one : all) {
-    const bio::Channel* channel = channelNamed(recording, one.channel);
-    if (channel == nullptr) continue;
-    const bio::MeasuredOptions used = bio::withoutAliasing(one, channel->rate, config.outputRate);
+  for (const bio::MeasuredOptions& options : all) {
+    const double rate = bio::findChannel(recording, options.channel).rate;
+    const bio::MeasuredOptions used = bio::withoutAliasing(options, rate, config.outputRate);
     methods.say(
         Methods::Part::data,
-        fmt::format("{} is channel '{}', recorded at {} Hz{}.", one.coordinate, one.channel,
-                    numberText(channel->rate),
+        fmt::format("{} is channel '{}', recorded at {} Hz{}.", options.coordinate, options.channel,
+                    numberText(rate),
                     used.lowPass ? fmt::format(" and low-passed at {} Hz without lag "
                                                "(Butterworth, order {} of each of two passes)",
                                                numberText(*used.lowPass), used.lowPassOrder)
@@ -181,14 +172,14 @@ void sayMeasured(const bio::Recording& recording, const bio::EmgConfig& config, 
 }
 
 void sayRecordings(const bio::JoinedRecordings& joined, Methods& methods) {
-  for (const bio::JoinedRecordings::Placed& one : joined.placed) {
-    methods.say(
-        Methods::Part::data,
-        fmt::format("{} was shifted by {} s to the time of the first recording, {}.",
-                    std::filesystem::path(one.file).filename().string(), numberText(one.offset),
-                    one.found ? fmt::format("where both correlate best (correlation {})",
-                                            numberText(one.found->correlation, 3))
-                              : "as given"));
+  for (const bio::JoinedRecordings::Placed& placed : joined.placed) {
+    methods.say(Methods::Part::data,
+                fmt::format("{} was shifted by {} s to the time of the first recording, {}.",
+                            std::filesystem::path(placed.file).filename().string(),
+                            numberText(placed.offset),
+                            placed.found ? fmt::format("where both correlate best (correlation {})",
+                                                       numberText(placed.found->correlation, 3))
+                                         : "as given"));
   }
 }
 

@@ -60,13 +60,13 @@ void sayEnsemble(const EnsembleFindings& f, const TypedLaws& typed, std::uint64_
   sayPoints(f, typed, seed, isDecomposed, methods);
   const auto ok = f.outcomes.find("ok");
   const std::uint64_t lost = f.ensemble.count() - (ok == f.outcomes.end() ? 0 : ok->second);
-  methods.say(Methods::Part::inference,
-              fmt::format("Bands are the 5th, 50th and 95th percentiles at each of {} times{}.",
-                          f.table.course().size(),
-                          lost == 0 ? std::string()
-                                    : fmt::format("; {} {} that did not reach the end {} left out",
-                                                  lost, lost == 1 ? "simulation" : "simulations",
-                                                  lost == 1 ? "is" : "are")));
+  methods.say(
+      Methods::Part::inference,
+      fmt::format("Bands are the 5th, 50th and 95th percentiles at each of {} times{}.",
+                  f.table.course().size(),
+                  lost == 0 ? std::string()
+                            : fmt::format("; {} that did not reach the end {} left out",
+                                          counted(lost, "simulation"), lost == 1 ? "is" : "are")));
   if (isDecomposed) {
     methods.say(Methods::Part::inference,
                 fmt::format("First-order Sobol indices are estimated as by {}, total indices by "
@@ -84,8 +84,8 @@ void sayDiscoveryInSets(const ModelDiscoveryRequest& each, std::size_t sets, Met
   methods.say(
       Methods::Part::inference,
       fmt::format("{} data sets were searched for missing effects, each by itself, with at most {} "
-                  "{} in one hypothesis and {}; the report of each set has its methods.",
-                  sets, each.maxEffects, each.maxEffects == 1 ? "effect" : "effects",
+                  "in one hypothesis and {}; the report of each set has its methods.",
+                  sets, counted(static_cast<std::size_t>(each.maxEffects), "effect"),
                   each.noise ? fmt::format("a noise of {} deg", numberText(*each.noise))
                              : std::string("the noise estimated from its data")));
 }

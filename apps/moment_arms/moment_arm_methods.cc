@@ -27,11 +27,10 @@ void sayMomentArms(const bio::Model& model, const bio::PathSample& sample,
                    const std::string& unit, Methods& methods) {
   methods.say(
       Methods::Part::model,
-      fmt::format("Muscle–tendon lengths ℓ and moment arms r = −∂ℓ/∂q of {} {} were computed at {} "
+      fmt::format("Muscle–tendon lengths ℓ and moment arms r = −∂ℓ/∂q of {} were computed at {} "
                   "equally spaced values of {} from {} to {} {}.",
-                  sample.muscles.size(), sample.muscles.size() == 1 ? "muscle" : "muscles",
-                  shown.size(), coordinate, numberText(shown[0]),
-                  numberText(shown[shown.size() - 1]), unit));
+                  counted(sample.muscles.size(), "muscle"), shown.size(), coordinate,
+                  numberText(shown[0]), numberText(shown[shown.size() - 1]), unit));
   sayOtherCoordinates(methods);
   sayPaths(model, sample.muscles, methods);
   sayDerivatives("Moment arms and their slopes are", methods);
@@ -48,10 +47,10 @@ void sayOpenSimDifferences(const std::vector<bio::OpenSimDifference>& difference
 void sayPostures(const bio::Model& model, const bio::PathPostures& paths, Methods& methods) {
   methods.say(
       Methods::Part::model,
-      fmt::format("Muscle–tendon lengths ℓ of {} {} and their slopes ∂ℓ/∂q, which are minus the "
+      fmt::format("Muscle–tendon lengths ℓ of {} and their slopes ∂ℓ/∂q, which are minus the "
                   "moment arms, were computed in {} postures that are given by {}.",
-                  paths.muscles.size(), paths.muscles.size() == 1 ? "muscle" : "muscles",
-                  paths.length.rows(), listed(paths.coordinates)));
+                  counted(paths.muscles.size(), "muscle"), paths.length.rows(),
+                  listed(paths.coordinates)));
   sayOtherCoordinates(methods);
   sayPaths(model, paths.muscles, methods);
   sayDerivatives("Slopes are", methods);
@@ -62,10 +61,9 @@ void sayPathFits(const bio::Model& model, const std::vector<bio::MuscleFit>& fit
   methods.say(
       Methods::Part::model,
       fmt::format(
-          "The muscle–tendon length of {} {} was approximated by a polynomial of the coordinates "
+          "The muscle–tendon length of {} was approximated by a polynomial of the coordinates "
           "that change it, of the lowest order up to {} that keeps the largest error within {} mm.",
-          fits.size(), fits.size() == 1 ? "muscle" : "muscles", request.order,
-          numberText(request.tolerance)));
+          counted(fits.size(), "muscle"), request.order, numberText(request.tolerance)));
   std::vector<std::string> muscles;
   for (const bio::MuscleFit& fit : fits) muscles.push_back(fit.muscle);
   if (request.table.empty()) {

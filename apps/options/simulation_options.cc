@@ -61,7 +61,7 @@ std::string typedOptions(const SimulationOptions& options, bool withStep) {
 }
 
 nlohmann::ordered_json settingsOf(const SimulationOptions& options) {
-  const auto listed = [](const std::vector<Assignment>& assignments) {
+  const auto valuesOf = [](const std::vector<Assignment>& assignments) {
     nlohmann::ordered_json list = nlohmann::ordered_json::object();
     for (const Assignment& assignment : assignments) list[assignment.name] = assignment.value;
     return list;
@@ -69,9 +69,9 @@ nlohmann::ordered_json settingsOf(const SimulationOptions& options) {
   return {{"integrator", options.integrator},
           {"step_s", options.stepOrDefault()},
           {"coordinates", options.coordinates},
-          {"locked", listed(options.locks)},
-          {"initial", listed(options.initial)},
-          {"set", listed(options.set)},
+          {"locked", valuesOf(options.locks)},
+          {"initial", valuesOf(options.initial)},
+          {"set", valuesOf(options.set)},
           {"wrap_as_cylinder", options.wrapAsCylinder},
           {"ignore_extra", options.ignoreExtra},
           {"prescribed", options.prescribed},

@@ -45,6 +45,10 @@ std::string withUnit(double value, const std::string& unit, int digits) {
   return numberText(value, digits) + (unit.empty() ? "" : " " + unit);
 }
 
+std::string counted(std::size_t count, const std::string& noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 std::string listed(const std::vector<std::string>& words) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {

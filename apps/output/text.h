@@ -29,6 +29,9 @@ double numberIn(const std::string& text);
 /// "0.016 m", or "0.016" for a pure number.
 std::string withUnit(double value, const std::string& unit, int digits = 4);
 
+/// "1 muscle", "3 muscles": a number of things whose plural ends in s.
+std::string counted(std::size_t count, const std::string& noun);
+
 /// "a", "a and b", "a, b and c"
 std::string listed(const std::vector<std::string>& words);
 

@@ -145,9 +145,9 @@ void sayMotion(const MotionRequest& request, const MotionResult& found, Methods&
   methods.say(Methods::Part::inference,
               fmt::format("It descends along exact gradients with the projection operator ({}), "
                           "whose gains are those of a linear-quadratic regulator, and Armijo's "
-                          "rule for the step; it made {} {} ({}).",
-                          citation(Publication::wilson), found.search.iterations,
-                          found.search.iterations == 1 ? "iteration" : "iterations",
+                          "rule for the step; it made {} ({}).",
+                          citation(Publication::wilson),
+                          counted(static_cast<std::size_t>(found.search.iterations), "iteration"),
                           info::describe(found.search.why)));
   if (found.trialsBefore) {
     sayMonteCarlo(found.trialsBefore->result.trials.size(), request.seed,
@@ -164,11 +164,12 @@ void sayMotion(const MotionRequest& request, const MotionResult& found, Methods&
 void sayInformation(const ExperimentRequest& request, const info::PlannedExperiment& plan,
                     int trials, std::uint64_t seed, Methods& methods) {
   sayRobot(request.pendulum, listed(namesOf(plan.parameters)), methods);
-  methods.say(Methods::Part::inference,
-              fmt::format("{}, for 5 s; the Fisher information I = Σ ΓᵀΣ⁻¹Γ is that of all samples "
-                          "at the true values, with exact sensitivities Γ, and its inverse is the "
-                          "Cramér–Rao bound.",
-                          startText(request)));
+  methods.say(
+      Methods::Part::inference,
+      fmt::format("{}, for {} s; the Fisher information I = Σ ΓᵀΣ⁻¹Γ is that of all samples "
+                  "at the true values, with exact sensitivities Γ, and its inverse is the "
+                  "Cramér–Rao bound.",
+                  startText(request), numberText(info::robot::experimentDuration)));
   if (trials > 0) {
     sayMonteCarlo(static_cast<std::size_t>(trials), seed, "with this motion", methods);
   }
@@ -201,11 +202,10 @@ void sayStringLength(const info::robot::StringLengthRequest& request,
   }
   methods.say(
       Methods::Part::inference,
-      fmt::format("In {} {} of {} s from different initial lengths (seed {}), sequential "
+      fmt::format("In {} of {} s from different initial lengths (seed {}), sequential "
                   "action control ({}) chose motions that are informative about the "
                   "length, with a weight of {} on the middle position; it {}.",
-                  found.trials.size(), found.trials.size() == 1 ? "trial" : "trials",
-                  numberText(request.duration), request.seed,
+                  counted(found.trials.size(), "trial"), numberText(request.duration), request.seed,
                   citation(Publication::ansariMurphey2016), numberText(request.trackingWeight),
                   request.searchTime ? "may postpone an action to a better time" : "acts at once"),
       {Publication::ansariMurphey2016});

@@ -116,7 +116,7 @@ std::vector<PlannedExperiment> passiveMotions(const Trial& trial, const Encompas
       changed.conditions.massInHand += mass;
       changed.conditions.armTurn += turn * radiansPerDegree;
       if (auto moved = movedPassively(std::move(changed), model, low, high))
-        planned.push_back({sentenceOf(*moved, model, low, high), std::move(*moved)});
+        planned.push_back({sentenceOf(*moved, model, low, high), std::move(*moved), false});
     }
   }
   return planned;

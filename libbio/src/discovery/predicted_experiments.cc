@@ -42,13 +42,11 @@ std::vector<PredictedExperiment> predictExperiments(const Trial& trial,
   if (verdict.rivals.size() < 2) return predictedExperiments;
   const EncompassingModel& encompassing = data.encompassing();
   std::vector<PlannedExperiment> experiments = plannedExperiments(trial, encompassing);
-  const std::size_t numRepeated = experiments.size();
   for (PlannedExperiment& experiment : passiveMotions(trial, encompassing))
     experiments.push_back(std::move(experiment));
-  for (std::size_t e = 0; e < experiments.size(); ++e) {
-    const PlannedExperiment& experiment = experiments[e];
+  for (const PlannedExperiment& experiment : experiments) {
     MusculoskeletalProblemOptions options = data.options();
-    if (e >= numRepeated) options.initial.clear();  // passive motions have beginnings of their own
+    if (!experiment.keepsStart) options.initial.clear();
     const MusculoskeletalProblem planned(encompassing.base(), encompassing.systemOptions(),
                                          encompassing.coordinateNames(), {experiment.trial},
                                          options);

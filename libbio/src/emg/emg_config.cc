@@ -288,7 +288,7 @@ MvcValue mvcFromFile(const EmgConfigFile& config, std::size_t i, const Channel& 
   const double most = emgEnvelope(channel, config.emg).envelope.maxCoeff();
   const std::string source = fmt::format("{}:{}: mvc_file {} has {:.4g}", config.file,
                                          config.electrodeLines[i], file, most);
-  return {envelopeIn(its, most, channel.unit, source, conversions), "from " + file};
+  return {envelopeIn(its, most, channel.unit, source, conversions), "from " + file, file};
 }
 
 }  // namespace

@@ -35,18 +35,6 @@ std::string stages(const EmgConfig& config) {
                            config.envelope.cutoff);
 }
 
-std::string electrodeSentence(const ElectrodeTrace& trace) {
-  std::string out =
-      fmt::format("'{}': {:g} Hz, {:.4g} {} corresponds to excitation 1 ({})", trace.channel,
-                  trace.rate, trace.full, trace.unit, trace.fullSource);
-  out += fmt::format("; {} of the samples were above and were clipped to 1",
-                     percent(trace.fractionAbove));
-  if (trace.fractionBelow > 0) {
-    out += fmt::format(", {} were below 0 and were set to 0", percent(trace.fractionBelow));
-  }
-  return out + ".";
-}
-
 void addLimits(const EmgConfig& config, const EmgResult& result, std::vector<std::string>& out) {
   bool anyPercentile = false;
   for (const Electrode& electrode : config.electrodes) {
@@ -103,11 +91,23 @@ std::string sourceOf(const UnrecordedMuscle& muscle) {
   return fmt::format("{}the mean of {}", times, listed(parts));
 }
 
+std::string remarkOn(const ElectrodeTrace& trace) {
+  std::string out =
+      fmt::format("'{}': {:g} Hz, {:.4g} {} corresponds to excitation 1 ({})", trace.channel,
+                  trace.rate, trace.full, trace.unit, trace.fullSource);
+  out += fmt::format("; {} of the samples were above and were clipped to 1",
+                     percent(trace.fractionAbove));
+  if (trace.fractionBelow > 0) {
+    out += fmt::format(", {} were below 0 and were set to 0", percent(trace.fractionBelow));
+  }
+  return out + ".";
+}
+
 std::vector<std::string> remarksOn(const Recording& recording, const EmgConfig& config,
                                    const EmgResult& result) {
   std::vector<std::string> out;
   out.push_back(stages(config) + ".");
-  for (const ElectrodeTrace& trace : result.electrodes) out.push_back(electrodeSentence(trace));
+  for (const ElectrodeTrace& trace : result.electrodes) out.push_back(remarkOn(trace));
   if (config.shape < 0) {
     out.push_back(fmt::format("Excitation = (e^(A·u) − 1)/(e^A − 1) with A = {:g}.", config.shape));
   }

@@ -75,9 +75,10 @@ PlannedExperiment plannedExperiment(const ExperimentRequest& request) {
   if (!request.pendulum)
     return suspendedMassExperiment(
         own ? suspendedMassStart()
-            : cosineMotion(request.amplitude.value_or(0.0476), period, 5, 100, 1));
-  const CartMotion motion = own ? doublePendulumStart()
-                                : cosineMotion(request.amplitude.value_or(0.05), period, 5, 30, 2);
+            : cosineMotion(request.amplitude.value_or(0.0476), period, experimentDuration, 100, 1));
+  const CartMotion motion =
+      own ? doublePendulumStart()
+          : cosineMotion(request.amplitude.value_or(0.05), period, experimentDuration, 30, 2);
   return request.bothMasses ? doublePendulumExperiment(motion, DoublePendulumUnknowns::bothMasses,
                                                        request.undamped ? 0.0 : 5e-4)
                             : doublePendulumExperiment(motion);

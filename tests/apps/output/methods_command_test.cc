@@ -215,7 +215,7 @@ TEST(MethodsOfCommands, DesignTellsCriterionInputsAndSearch) {
             HasSubstr("a torque on elbow_flexion (at most 10 N m and 50 N m/s), piecewise linear "
                       "between knots every 0.3 s"),
             HasSubstr("even if the parameters of interest are 0.5 prior standard deviations off"),
-            HasSubstr("3 random designs and one generation of CMA-ES (Hansen, 2016) from the best "
+            HasSubstr("3 random designs and 1 generation of CMA-ES (Hansen, 2016) from the best "
                       "of them (seed 1)"),
             Not(HasSubstr("along exact gradients")), Not(HasSubstr("Schur"))));
   const std::string other =
@@ -233,7 +233,7 @@ TEST(MethodsOfCommands, DesignTellsCriterionInputsAndSearch) {
             HasSubstr("with BRA.max_isometric_force unknown as well"), HasSubstr("Schur"),
             HasSubstr("at most 5 N m"), HasSubstr("an excitation of BIClong, BICshort, BRA and "),
             HasSubstr("knots every 0.2 s"),
-            HasSubstr("2 random designs and one iteration along exact gradients (seed 4)"),
+            HasSubstr("2 random designs and 1 iteration along exact gradients (seed 4)"),
             Not(HasSubstr("CMA-ES")), Not(HasSubstr("standard deviations off"))));
   const std::string separating = with({"--separate", "visc,spring", "--size", "visc=0.3",
                                        "--candidates", "2", "--generations", "0"});

@@ -7,6 +7,7 @@
 
 namespace bio {
 
+/// What gradientOfOutputs() finds.
 struct OutputGradient {
   Eigen::VectorXd outputs;  ///< y, as of predictorOf()
   CostGradient sum;         ///< J and its derivatives

@@ -24,11 +24,11 @@ struct MusculoskeletalProblemOptions : CatalogueChoice {
   /// τ_0 of its scale [N·m] > 0; without muscles, whose errors it stands for, times a fortieth of
   /// the largest weight of what moves, in [N m], or a 160th of that weight in [N].
   double latentFloor = 0.5;
-  double startSd = 0.035;     ///< prior sd of each trial's initial angle [rad] > 0; a shift
-                              ///< has an eighth of it [m]
-  double speedSd = 0.1;       ///< prior sd of each trial's initial speed [rad/s] > 0, or an
-                              ///< eighth of it [m/s]; of one that starts in motion: as large
-                              ///< as that speed
+  double startSd = 0.035;  ///< prior sd of each trial's initial angle [rad] > 0; a shift
+                           ///< has an eighth of it [m]
+  double speedSd = 0.1;    ///< prior sd of each trial's initial speed [rad/s] > 0, or an
+                           ///< eighth of it [m/s]; of one that starts in motion: as large
+                           ///< as that speed
   /// Initial values of free coordinates [rad] or [m], at rest, that the prior of every trial's
   /// initial state has as its mean; the others are as measured.
   std::map<std::string, double> initial = {};
@@ -83,8 +83,8 @@ class MusculoskeletalProblem : public info::discover::DiscoveryProblem {
 
   /// @param coordinates those in question; missing samples have no time
   /// @throws std::invalid_argument what EncompassingModel, ObservedMotion and startCoordinates
-  ///   throw, no trial, a trial without a measured value, an integrator without sensitivities, an option out of range,
-  ///   a known mass in the hand of a model without a body to carry it
+  ///   throw, no trial, a trial without a measured value, an integrator without sensitivities, an
+  ///   option out of range, a known mass in the hand of a model without a body to carry it
   MusculoskeletalProblem(const Model& model, const SystemOptions& system,
                          const CoordinateNames& coordinates, std::vector<Trial> trials,
                          MusculoskeletalProblemOptions options = {});

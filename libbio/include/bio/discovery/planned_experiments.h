@@ -12,6 +12,7 @@ namespace bio::discover {
 struct PlannedExperiment {
   std::string sentence;  ///< what to do
   Trial trial;
+  bool keepsStart = true;  ///< begins where the recorded trial does
 };
 
 /// Experiments that are easy to do: a known mass at the end of the limb (0.1 to 1 kg, in addition

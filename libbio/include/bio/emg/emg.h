@@ -25,6 +25,7 @@ enum class EmgSignal {
 struct MvcValue {
   double value = 0;              ///< > 0
   std::string source = "given";  ///< source of the number, for the report
+  std::string recording = {};    ///< file of the contraction; empty: the value was given
 };
 /// … or, if none was recorded, a percentile of this recording's own envelope.
 struct OwnPercentile {
@@ -103,6 +104,9 @@ struct EmgResult {
 
 /// "0.7 of electrode 'biceps'", "the mean of …", "a constant 0.05"
 std::string sourceOf(const UnrecordedMuscle& muscle);
+
+/// "'biceps': 2000 Hz, 0.8 mV corresponds to excitation 1 (…); …", one of the result's remarks.
+std::string remarkOn(const ElectrodeTrace& trace);
 
 /// How a measured channel is filtered before it becomes rows: as `options` say; one that is faster
 /// than the rows passes a zero-lag low-pass of order 6 at 0.4 of their rate, unless its own is

@@ -13,7 +13,9 @@
 /// Information of a robot's experiment about its parameters, and how estimators perform on it.
 namespace info::robot {
 
-/// An experiment of 5 s with the cart motion amplitude·(1 − cos 2πt/period).
+inline constexpr double experimentDuration = 5;  ///< as in the thesis [s]
+
+/// An experiment of experimentDuration with the cart motion amplitude·(1 − cos 2πt/period).
 struct ExperimentRequest {
   bool pendulum = true;  ///< else the suspended mass
   std::optional<double> amplitude = {},
