@@ -12,6 +12,7 @@
 #include "bio/model/nearest_name.h"
 #include "bio/tables/unknown_column.h"
 #include "command/command_line.h"
+#include "info/parallel_for.h"
 #include "output/interruption.h"
 #include "output/standard_streams.h"
 #include "output/text.h"
@@ -131,6 +132,7 @@ int runProgram(const std::vector<std::string>& arguments,
     return fail(parsedSubcommand(line.program())->get_name(), error.what());
   }
   catchInterruption();
+  const info::ThreadLimit limit(chosen.context->threads);
   return printed(runCommand(*chosen.command, *chosen.context, *parsedSubcommand(line.program())),
                  chosen.context->subcommand);
 }

@@ -20,6 +20,7 @@ std::map<std::string, double> byName(const std::vector<Assignment>& assignments)
 
 bio::SystemOptions systemOptions(const SimulationOptions& options) {
   bio::SystemOptions system;
+  system.threads = 0;  // --threads limits the program
   system.skeleton.freeCoordinates = options.coordinates;
   system.skeleton.lockedValues = byName(options.locks);
   system.prescribed = options.prescribed;

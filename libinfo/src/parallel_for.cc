@@ -1,5 +1,6 @@
 #include "info/parallel_for.h"
 
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -7,6 +8,17 @@
 #include <algorithm>
 
 namespace info {
+
+struct ThreadLimit::Control {
+  tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(int threads)
+    : control_(new Control{
+          {tbb::global_control::max_allowed_parallelism,
+           static_cast<std::size_t>(std::clamp(threads, 1, tbb::info::default_concurrency()))}}) {}
+
+ThreadLimit::~ThreadLimit() = default;
 
 void parallelFor(int n, int threads, const std::function<void(int)>& body) {
   // more than there are cores gains nothing, and TBB complains about it on standard error

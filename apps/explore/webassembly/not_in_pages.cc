@@ -3,8 +3,18 @@
 #include <stdexcept>
 
 #include "bio/robot_description/robot_description.h"
+#include "info/parallel_for.h"
 #include "simulation/integrators.h"
 #include "tables/formats/foreign_format.h"
+
+// A page has one thread.
+namespace info {
+
+void parallelFor(int n, int, const std::function<void(int)>& body) {
+  for (int i = 0; i < n; ++i) body(i);
+}
+
+}  // namespace info
 
 namespace bio {
 

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
 
 #include "bio/path/path_lengths.h"
 #include "bio/path/posture_samples.h"
+#include "info/parallel_for.h"
 #include "model/listed_names.h"
 #include "model/plausible.h"
 #include "simulation/integrators.h"
@@ -48,6 +50,46 @@ Muscle asMuscle(const ElasticPath& elastic) {
   carrier.name = elastic.name;
   carrier.path = elastic.path;
   return carrier;
+}
+
+/// The path of one muscle, or why there is none.
+class FoundPath {
+ public:
+  void find(const Model& model, const Skeleton& skeleton, const Muscle& muscle,
+            const SystemOptions& options, const std::vector<Posture>& postures) noexcept {
+    try {
+      path_.emplace(model, skeleton, muscle, options.wrapAsCylinder, postures);
+      if (options.tabulatePaths && path_->moves()) path_->tabulate(skeleton);
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+  }
+  /// @throws what was thrown when it was sought
+  MusclePath&& path() {
+    if (error_) std::rethrow_exception(error_);
+    return std::move(path_.value());
+  }
+
+ private:
+  std::optional<MusclePath> path_;
+  std::exception_ptr error_;
+};
+
+/// One per muscle; empty where it is switched off. Taut paths over general surfaces are most of
+/// what a large model takes to compile.
+std::vector<FoundPath> findPaths(const Model& model, const Skeleton& skeleton,
+                                 const SystemOptions& options, PostureSamples& postures) {
+  std::vector<FoundPath> found(model.muscles.size());
+  std::vector<const std::vector<Posture>*> lists;
+  for (const Muscle& muscle : model.muscles) {
+    lists.push_back(muscle.enabled ? &postures.of(muscle) : nullptr);
+  }
+  info::parallelFor(static_cast<int>(found.size()), options.threads, [&](int i) {
+    const auto muscle = static_cast<std::size_t>(i);
+    if (!lists[muscle]) return;
+    found[muscle].find(model, skeleton, model.muscles[muscle], options, *lists[muscle]);
+  });
+  return found;
 }
 
 }  // namespace
@@ -161,8 +203,11 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
     notes_ = adviceOnCylinders(options.wrapAsCylinder);
   }
   PostureSamples postures(model, skeleton_);
+  std::vector<FoundPath> found;
+  if (!like) found = findPaths(model, skeleton_, options, postures);
   std::vector<std::string> unmoved;
-  for (const Muscle& muscle : model.muscles) {
+  for (std::size_t m = 0; m < model.muscles.size(); ++m) {
+    const Muscle& muscle = model.muscles[m];
     if (!muscle.enabled) {
       notes_.push_back(fmt::format("muscle '{}' is switched off in the model", muscle.name));
       continue;
@@ -174,8 +219,10 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
     try {
       if (ready) {
         compiled = *ready;
-      } else {
+      } else if (like) {
         compiled.emplace(model, skeleton_, muscle, options.wrapAsCylinder, postures.of(muscle));
+      } else {
+        compiled = found[m].path();
       }
     } catch (const UnsupportedWrap& e) {
       warnings_.push_back(fmt::format("{}: the muscle is left out", e.what()));
@@ -201,7 +248,6 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
                       "simulated are {}",
                       muscle.name, muscle.className, simulatedClasses()));
     }
-    if (options.tabulatePaths && !like) path.tabulate(skeleton_);
     for (const std::string& note : path.notes()) notes_.push_back(note);
     addSwitches(path);
     try {

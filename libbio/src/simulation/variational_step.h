@@ -116,7 +116,8 @@ class VariationalStepper {
       dTau = dPassive;
       if (others_.any()) dTau += others_.load_q() / 2;
 
-      addMuscles(begin, end, activation, {v, h, share}, dTau, eliminated, carried);
+      addMuscles(begin, end, activation, {v, h, share, result.iterations == 1}, dTau, eliminated,
+                 carried);
 
       R = Mv - h / 2 * L_q - share * (muscle_ + passive_ + external_) - begin.p;
       J = dMv - h / 2 * dL_q - share * dTau - eliminated;
@@ -196,38 +197,64 @@ class VariationalStepper {
   static constexpr double worthwhile = 1e-4;        ///< corrections above are always followed
   static constexpr double largestTurn = 0.3;        ///< [rad] per iteration
   static constexpr double largestFibreStep = 0.25;  ///< of ℓ0 per iteration
+  // fibres' corrections, of ℓ0 (decision 095): one by one above the first two, down to the third
+  static constexpr double boldFirst = 1e-4, bold = 1e-6, settled = 1e-7;
+  static constexpr int mostTries = 20;
 
   struct Moving {
     const Vector& v;
     double h, share;
+    bool isFirst;  ///< iteration
   };
   /// Forces of the muscles on the skeleton, and fibre lengths eliminated one by one.
-  void addMuscles(const Ends& begin, const Ends& end, const Eigen::VectorXd& activation,
+  void addMuscles(const Ends& begin, Ends& end, const Eigen::VectorXd& activation,
                   const Moving& step, Matrix& dTau, Matrix& eliminated, Vector& carried) {
-    const auto& [v, h, share] = step;
+    const auto& [v, h, share, isFirst] = step;
     muscle_.setZero();
     eliminated.setZero(countOf<N>(system_), countOf<N>(system_));
     carried.setZero(countOf<N>(system_));
     for (std::size_t i = 0; i < rate_.size(); ++i) {
       const auto si = static_cast<Eigen::Index>(i);
       const LengthJet<N>& path = configuration_.length(i);
-      const double l_m = (begin.fibreLength[si] + end.fibreLength[si]) / 2;
-      const SimulatedMuscle& muscle = system_.muscles()[i].muscle;
-      if (!muscle.hasFibreState()) {
+      if (!system_.muscles()[i].muscle.hasFibreState()) {
         addRigid(i, activation[si], path, v, h, dTau);
         continue;
       }
-      rate_[i] = muscle.rateNear(activation[si], l_m, path.length,
-                                 (end.fibreLength[si] - begin.fibreLength[si]) / h, h, pieces_[i]);
+      settleFibre(i, begin.fibreLength[si], activation[si], path.length, step, end.fibreLength[si]);
       const FibreRateDerivatives& r = rate_[i];
       addAlong<N>(muscle_, -r.tendonForce, path);
-      residual_[si] = (end.fibreLength[si] - begin.fibreLength[si]) / h - r.fibreVelocity;
-      inverse_[si] = 1 / (1 / h - r.dV_dFibreLength / 2);
       // G_i C_i/J_i with C = −½ V_L ∂ℓ, G = share·½ F_ℓ ∂ℓ
       const double G = share / 2 * r.dF_dFibreLength;
       addStiffness<N>(dTau, -(r.dF_dMuscleTendonLength / 2), -(r.tendonForce / 2), eliminated,
                       -(G * inverse_[si] * r.dV_dMuscleTendonLength / 2), path);
       addAlong<N>(carried, G * inverse_[si] * residual_[si], path);
+    }
+  }
+
+  /// Rate, residual and 1/J of a fibre that ends at `end`, for this iteration's length of the path.
+  /// Where its correction would be a bold one, the fibre's own equation is solved first, by
+  /// Newton's method within a bracket (its residual rises with `end`): that takes a rate of one
+  /// muscle at a time, where the system's iteration takes every path. On a stiff tendon a fibre
+  /// that is hardly active needs it up to eight times.
+  void settleFibre(std::size_t i, double begin, double activation, double pathLength,
+                   const Moving& step, double& end) {
+    const auto si = static_cast<Eigen::Index>(i);
+    const SimulatedMuscle& muscle = system_.muscles()[i].muscle;
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    double enough = step.isFirst ? boldFirst : bold;
+    for (int tries = 0;; ++tries) {
+      const double velocity = (end - begin) / step.h;
+      rate_[i] =
+          muscle.rateNear(activation, (begin + end) / 2, pathLength, velocity, step.h, pieces_[i]);
+      residual_[si] = velocity - rate_[i].fibreVelocity;
+      inverse_[si] = 1 / (1 / step.h - rate_[i].dV_dFibreLength / 2);
+      const double correction = -residual_[si] * inverse_[si];
+      if (!(std::abs(correction) * muscle.perFibre() > enough) || tries == mostTries) return;
+      enough = settled;
+      (correction < 0 ? high : low) = end;
+      end += correction;
+      if (!(low < end && end < high)) end = (low + high) / 2;
     }
   }
 

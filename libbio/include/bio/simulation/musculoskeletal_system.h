@@ -30,6 +30,7 @@ struct SystemOptions {
   /// Free coordinates whose motion is given (SimulationOptions::prescribed): by a
   /// trial, or by the model's own function of time (courseOf()).
   std::vector<std::string> prescribed = {};
+  int threads = 1;  ///< that find the taut paths of different muscles; 0: all cores
 };
 
 /// One muscle ready to be simulated.
