@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/first_guess.h"
 #include "simulation/integrators.h"
 
 namespace bio::stepping {
 
-/// The last two parts of a motion.
+/// The last parts of a motion.
 template <int N>
 struct LastParts {
-  using Vector = Eigen::Matrix<double, N, 1>;
-  Vector velocity, velocityBefore;                     ///< mean speeds [rad/s] or [m/s]
-  Eigen::VectorXd fibreVelocity, fibreVelocityBefore;  ///< [m/s]
-  double length = 0, lengthBefore = 0;                 ///< [s]
+  LastEnds<Eigen::Matrix<double, N, 1>> q;  ///< [rad] or [m]
+  LastEnds<Eigen::VectorXd> fibreLength;    ///< [m]
+  PartLengths lengths;
 };
 
 /// The error that a part of a step of vi-adaptive may have [rad] or [m]; 0: another integrator. A
@@ -76,7 +76,7 @@ class StepControl {
   void take(const LastParts<N>& last) {
     if (!isUsed()) return;
     thirdBefore_.swap(third_);
-    lengthOlder_ = last.lengthBefore;
+    lengthOlder_ = last.lengths.before;
   }
 
  private:
@@ -85,14 +85,9 @@ class StepControl {
 
   template <class Ends>
   double errorOf(double h, const Ends& begin, const Ends& end, const LastParts<N>& last) {
-    const double h1 = h + last.length, h2 = last.length + last.lengthBefore;
-    const double h3 = h + h2;
-    third_ = (((end.q - begin.q) / h - last.velocity) / h1 -
-              (last.velocity - last.velocityBefore) / h2) /
-             h3;  // q‴/6
-    fibreThird_ = (((end.fibreLength - begin.fibreLength) / h - last.fibreVelocity) / h1 -
-                   (last.fibreVelocity - last.fibreVelocityBefore) / h2) /
-                  h3;
+    last.q.thirdUpTo(h, last.lengths, begin.q, end.q, third_);
+    last.fibreLength.thirdUpTo(h, last.lengths, begin.fibreLength, end.fibreLength, fibreThird_);
+    const double h3 = h + last.lengths.last + last.lengths.before;
     const double cube = h * h * h;
     const double position = cube / 2 * largest(third_);
     // q⁗/24 from the last two q‴/6

@@ -33,21 +33,20 @@ class VariationalRun {
         recorder_(system, numRows(options)),
         activation_(start.activation),
         middle_(start.activation),
+        last_{LastEnds<Vector>(start.qDot),
+              LastEnds<Eigen::VectorXd>(Eigen::VectorXd::Zero(start.fibreLength.size())),
+              {options.step, options.step}},
         control_(system, options),
         keptActivation_(static_cast<std::size_t>(options.maxHalvings) + 1, start.activation) {
     now_.q = start.q;
-    last_.velocity = start.qDot;
-    options.prescribed.place(options.startTime, now_.q, last_.velocity);
+    options.prescribed.place(options.startTime, now_.q, last_.q.velocity);
+    last_.q.velocityBefore = last_.q.velocity;
     configuration_.moveTo(now_.q);
-    now_.p = configuration_.massMatrix() * last_.velocity;
+    now_.p = configuration_.massMatrix() * last_.q.velocity;
     now_.fibreLength = start.fibreLength;
-    last_.velocityBefore = last_.velocity;
-    last_.fibreVelocity = Eigen::VectorXd::Zero(start.fibreLength.size());
-    last_.fibreVelocityBefore = last_.fibreVelocity;
-    last_.length = last_.lengthBefore = options.step;
     next_ = now_;
     if (!system_.switches().empty()) sides_.emplace(system_);
-    recorder_.add(options.startTime, now_.q, last_.velocity, activation_, now_.fibreLength, 0, 0,
+    recorder_.add(options.startTime, now_.q, last_.q.velocity, activation_, now_.fibreLength, 0, 0,
                   0);
     if (tape_) tape_->begin(now_.q, now_.fibreLength, activation_, numRows(options_));
   }
@@ -158,11 +157,8 @@ class VariationalRun {
     player_.advance(t0, tMiddle, activation_);
     middle_ = activation_;
     player_.advance(tMiddle, t1, activation_);
-    // the parabola through the last three ends
-    const double bend = h * (h + last_.length) / (last_.length + last_.lengthBefore);
-    next_.q = now_.q + (h + bend) * last_.velocity - bend * last_.velocityBefore;
-    next_.fibreLength =
-        now_.fibreLength + (h + bend) * last_.fibreVelocity - bend * last_.fibreVelocityBefore;
+    last_.q.guess(h, last_.lengths, now_.q, next_.q);
+    last_.fibreLength.guess(h, last_.lengths, now_.fibreLength, next_.fibreLength);
     options_.prescribed.place(t1, next_.q);
     result_ = stepper_.solve(h, tMiddle, now_, middle_, next_);
     count(result_.iterations);
@@ -200,12 +196,9 @@ class VariationalRun {
     if (tape_) tape_->add(begin.index, end.index, next_.q, next_.fibreLength, middle_, activation_);
     control_.take(last_);
     ++parts_;
-    last_.velocityBefore = last_.velocity;
-    last_.velocity = (next_.q - now_.q) / h;
-    last_.fibreVelocityBefore.swap(last_.fibreVelocity);
-    last_.fibreVelocity = (next_.fibreLength - now_.fibreLength) / h;
-    last_.lengthBefore = last_.length;
-    last_.length = h;
+    last_.q.add(h, last_.lengths, now_.q, next_.q);
+    last_.fibreLength.add(h, last_.lengths, now_.fibreLength, next_.fibreLength);
+    last_.lengths.add(h);
     now_.q.swap(next_.q);
     now_.p.swap(next_.p);
     now_.fibreLength.swap(next_.fibreLength);

@@ -26,6 +26,7 @@ class VariationalStepper {
         configuration_(system),
         others_(system),
         symmetric_(isSymmetric(options.integrator)),
+        mayShift_(N == Eigen::Dynamic || system.bodyForces().empty()),
         enough_(negligible * allowedError(options)),
         rate_(system.numMuscles()),
         pieces_(system.numMuscles()),
@@ -81,7 +82,7 @@ class VariationalStepper {
     for (result.iterations = 1; result.iterations <= options_.maxIterations; ++result.iterations) {
       q_m = (begin.q + end.q) / 2;
       v = (end.q - begin.q) / h;
-      if (result.iterations > 1 && !others_.any() && (q_m - at).cwiseAbs().maxCoeff() < near) {
+      if (result.iterations > 1 && mayShift_ && (q_m - at).cwiseAbs().maxCoeff() < near) {
         dq = q_m - place;
         configuration_.shift(dq);
       } else {
@@ -336,6 +337,7 @@ class VariationalStepper {
   SystemConfiguration<N> configuration_;
   OtherForces<N> others_;
   bool symmetric_;
+  bool mayShift_;  ///< not where forces ask for placements, which a shift may not move
   /// What Newton's method may leave, as a share of the error of a part; how little it matters:
   /// decision 092.
   static constexpr double negligible = 0.0075;

@@ -44,13 +44,11 @@ LaneDriver::LaneDriver(const MusculoskeletalSystem& system, const ExcitationSign
       targets_{{stepping::rowTime(options, 1), 0}},
       q_(start.q[0]),
       p_(mass * start.qDot[0]),
-      velocity_(start.qDot[0]),
-      velocityBefore_(velocity_),
-      length_(options.step),
-      lengthBefore_(options.step),
+      lengths_{options.step, options.step},
+      lastQ_(start.qDot[0]),
       fibre_(start.fibreLength),
-      fibreVelocity_(Eigen::VectorXd::Zero(fibre_.size())),
-      fibreVelocityBefore_(fibreVelocity_),
+      fibreGuess_(fibre_),
+      lastFibre_(Eigen::VectorXd::Zero(fibre_.size())),
       activation_(start.activation),
       middle_(activation_),
       kept_(activation_),
@@ -69,20 +67,21 @@ bool LaneDriver::ask(int lane, LaneStep<Of>& step) {
     if (phase_ == Phase::wholeStep) kept_ = activation_;
     chooseActivation();
   }
-  // the parabola through the last three ends
   const double h = t1_ - t0_;
-  const double bend = h * (h + length_) / (length_ + lengthBefore_);
-  const double now = fromRest_ ? 0 : h + bend;
-  const double before = fromRest_ ? 0 : bend;
+  double guess = q_;
+  fibreGuess_ = fibre_;
+  if (!fromRest_) {
+    lastQ_.guess(h, lengths_, q_, guess);
+    lastFibre_.guess(h, lengths_, fibre_, fibreGuess_);
+  }
   step.length[lane] = h;
   step.q[lane] = q_;
   step.p[lane] = p_;
-  step.qEnd[lane] = q_ + now * velocity_ - before * velocityBefore_;
+  step.qEnd[lane] = guess;
   for (Index i = 0; i < fibre_.size(); ++i) {
     MuscleStep<Of>& muscle = step.muscles[i];
     muscle.fibreLength[lane] = fibre_[i];
-    muscle.fibreLengthEnd[lane] =
-        fibre_[i] + now * fibreVelocity_[i] - before * fibreVelocityBefore_[i];
+    muscle.fibreLengthEnd[lane] = fibreGuess_[i];
     muscle.activation[lane] = middle_[i];
   }
   if (!options_->externalForce.empty()) {
@@ -227,12 +226,9 @@ void LaneDriver::meetFailure() {
 
 void LaneDriver::accept(bool endsTarget) {
   const double h = t1_ - t0_;
-  velocityBefore_ = velocity_;
-  velocity_ = (qEnd_ - q_) / h;
-  fibreVelocityBefore_.swap(fibreVelocity_);
-  fibreVelocity_ = (fibreEnd_ - fibre_) / h;
-  lengthBefore_ = length_;
-  length_ = h;
+  lastQ_.add(h, lengths_, q_, qEnd_);
+  lastFibre_.add(h, lengths_, fibre_, fibreEnd_);
+  lengths_.add(h);
   q_ = qEnd_;
   p_ = pEnd_;
   fibre_.swap(fibreEnd_);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "simulation/activation_player.h"
+#include "simulation/first_guess.h"
 #include "simulation/integrators.h"
 #include "simulation/simd/lane_model.h"
 #include "simulation/switch_jump.h"
@@ -97,12 +98,14 @@ class LaneDriver {
   std::size_t row_ = 1, rows_;
   double t0_, t1_;               ///< of the step asked for [s]
   std::vector<Target> targets_;  ///< the next one last
-  bool fromRest_ = false;        ///< the first guess is the begin: the parabola's step has failed
+  bool fromRest_ = false;        ///< the first guess is the begin: the extrapolated one has failed
   double q_, p_;
-  double velocity_, velocityBefore_, length_, lengthBefore_;
+  stepping::PartLengths lengths_;
+  stepping::LastEnds<double> lastQ_;
   double lastJump_ = -std::numeric_limits<double>::infinity();  ///< of a length [s]
   std::optional<stepping::SwitchSides<1>> sides_;               ///< where there are switches
-  Eigen::VectorXd fibre_, fibreVelocity_, fibreVelocityBefore_;
+  Eigen::VectorXd fibre_, fibreGuess_;
+  stepping::LastEnds<Eigen::VectorXd> lastFibre_;
   Eigen::VectorXd activation_, middle_, kept_;  ///< at the end, the middle, the begin of the step
   // the end that was last taken
   double qEnd_ = 0, pEnd_ = 0;
