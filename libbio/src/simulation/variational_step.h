@@ -199,7 +199,7 @@ class VariationalStepper {
   static constexpr double largestTurn = 0.3;        ///< [rad] per iteration
   static constexpr double largestFibreStep = 0.25;  ///< of ℓ0 per iteration
   // fibres' corrections, of ℓ0 (decision 095): one by one above the first two, down to the third
-  static constexpr double boldFirst = 1e-4, bold = 1e-6, settled = 1e-7;
+  static constexpr double boldFirst = 1e-4, bold = 1e-6, settled = 1e-9;
   static constexpr int mostTries = 20;
 
   struct Moving {

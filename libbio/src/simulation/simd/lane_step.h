@@ -2,6 +2,8 @@
 
 // The step of lane_model.h, for the one file per instruction set that compiles it.
 
+#include <limits>
+
 #include "simulation/simd/lane_muscle.h"
 #include "simulation/simd/lane_path.h"
 
@@ -34,13 +36,16 @@ class StepSolver final : public LaneSolver<Here> {
 
  private:
   struct Moving {
-    const Real &v, &perStep, &share;
+    const Real &v, &perStep, &share, &bold;
     const SineCosine& turn;
   };
   struct MuscleSums {
     Real force, dTau, eliminated, carried;
   };
-  void addMuscles(LaneStep<Here>& step, const Moving& moving, MuscleSums& sums);
+  void addMuscles(LaneStep<Here>& step, const Mask& running, const Moving& moving,
+                  MuscleSums& sums);
+  void settleFibre(int i, const Real& pathLength, const Mask& running, LaneStep<Here>& step,
+                   const Moving& moving, Rate& rate) const;
   void addRigid(const AnyLaneMuscle& law, MuscleStep<Here>& kept, const PathJet& path,
                 const Moving& moving, MuscleSums& sums);
   Real correctFibres(LaneStep<Here>& step, const Real& dq);
@@ -50,8 +55,8 @@ class StepSolver final : public LaneSolver<Here> {
 };
 
 /// Forces of the muscles, and fibre lengths eliminated one by one.
-inline void StepSolver::addMuscles(LaneStep<Here>& step, const Moving& moving, MuscleSums& sums) {
-  const Real& h = step.length;
+inline void StepSolver::addMuscles(LaneStep<Here>& step, const Mask& running, const Moving& moving,
+                                   MuscleSums& sums) {
   for (int i = 0; i < system_.numMuscles; ++i) {
     const LaneMuscle<Here>& muscle = system_.muscles[i];
     MuscleStep<Here>& kept = step.muscles[i];
@@ -61,20 +66,48 @@ inline void StepSolver::addMuscles(LaneStep<Here>& step, const Moving& moving, M
       addRigid(laws_[i], kept, path, moving, sums);
       continue;
     }
-    const Real l_m = (kept.fibreLength + kept.fibreLengthEnd) / 2;
-    const Real v = (kept.fibreLengthEnd - kept.fibreLength) / h;
     Rate r;
-    laws_[i].rate({kept.activation, l_m, path.length, v, h}, r);
+    settleFibre(i, path.length, running, step, moving, r);
     sums.force -= r.tendonForce.v * path.slope;
     sums.dTau -= r.dF_dMuscleTendonLength.v / 2 * path.slope * path.slope;
     sums.dTau -= r.tendonForce.v / 2 * path.curvature;
-    kept.residual = v - r.fibreVelocity.v;
-    kept.inverse = 1 / (moving.perStep - r.dV_dFibreLength.v / 2);
     const Real G = moving.share / 2 * r.dF_dFibreLength.v * kept.inverse * path.slope;
     sums.eliminated -= G * r.dV_dMuscleTendonLength.v / 2 * path.slope;
     sums.carried += G * kept.residual;
     kept.dV_dMuscleTendonLength = r.dV_dMuscleTendonLength.v;
     kept.dF_dFibreLength = r.dF_dFibreLength.v;
+  }
+}
+
+/// See VariationalStepper::settleFibre. Lanes that are done with it keep their end, and with that
+/// their rate.
+inline void StepSolver::settleFibre(int i, const Real& pathLength, const Mask& running,
+                                    LaneStep<Here>& step, const Moving& moving, Rate& rate) const {
+  constexpr double settled = 1e-9;
+  constexpr int mostTries = 20;
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  MuscleStep<Here>& kept = step.muscles[i];
+  const Real& h = step.length;
+  Real& end = kept.fibreLengthEnd;
+  Real low = same(-infinite);
+  Real high = same(infinite);
+  Real enough = moving.bold;
+  Mask unsettled = running;
+  for (int tries = 0;; ++tries) {
+    const Real v = (end - kept.fibreLength) / h;
+    laws_[i].rate({kept.activation, (kept.fibreLength + end) / 2, pathLength, v, h}, rate);
+    kept.residual = v - rate.fibreVelocity.v;
+    kept.inverse = 1 / (moving.perStep - rate.dV_dFibreLength.v / 2);
+    const Real correction = -kept.residual * kept.inverse;
+    unsettled &= absolute(correction) * system_.muscles[i].perFibre > enough;
+    if (!any(unsettled) || tries == mostTries) return;
+    enough = same(settled);
+    const Mask falls = correction < 0;
+    high = choose(unsettled & falls, end, high);
+    low = choose(unsettled & ~falls, end, low);
+    const Real next = end + correction;
+    const Real within = choose((low < next) & (next < high), next, (low + high) / 2);
+    end = choose(unsettled, within, end);
   }
 }
 
@@ -135,7 +168,11 @@ inline void StepSolver::solve(LaneStep<Here>& step) {
     if (system.hasForces) passiveForce(system, running, q_m, v, passive);
     const Real dPassive = passive.dForce_dq / 2 + passive.dForce_dqDot / h;
     MuscleSums sums{none, dPassive, none, none};
-    addMuscles(step, {v, perStep, share, turn}, sums);
+    Real bold = same(1e-6);
+    for (int l = 0; l < width; ++l) {
+      if (step.iterations[l] == 0) bold[l] = 1e-4;
+    }
+    addMuscles(step, running, {v, perStep, share, bold, turn}, sums);
     Real& force = sums.force;
     const Real& dTau = sums.dTau;
 
