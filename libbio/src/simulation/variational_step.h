@@ -144,6 +144,7 @@ class VariationalStepper {
       end.q += shorten * dq;
       end.fibreLength += shorten * residual_;
       const double correction = std::max(size, fibreSize);
+      if (settled_) previous = 0;  // what the fibres make of this correction it does not tell
       if (isEnough(result.iterations, correction, shorten == 1 ? previous : 0)) {
         finish(begin, h, share, {Mv, dq, dMv, dL_q, dPassive}, L_q, dTau, R, end, result);
         result.converged = true;
@@ -211,6 +212,7 @@ class VariationalStepper {
   void addMuscles(const Ends& begin, Ends& end, const Eigen::VectorXd& activation,
                   const Moving& step, Matrix& dTau, Matrix& eliminated, Vector& carried) {
     const auto& [v, h, share, isFirst] = step;
+    settled_ = false;
     muscle_.setZero();
     eliminated.setZero(countOf<N>(system_), countOf<N>(system_));
     carried.setZero(countOf<N>(system_));
@@ -253,6 +255,7 @@ class VariationalStepper {
       const double correction = -residual_[si] * inverse_[si];
       if (!(std::abs(correction) * muscle.perFibre() > enough) || tries == mostTries) return;
       enough = settled;
+      settled_ = true;
       (correction < 0 ? high : low) = end;
       end += correction;
       if (!(low < end && end < high)) end = (low + high) / 2;
@@ -337,7 +340,8 @@ class VariationalStepper {
   SystemConfiguration<N> configuration_;
   OtherForces<N> others_;
   bool symmetric_;
-  bool mayShift_;  ///< not where forces ask for placements, which a shift may not move
+  bool settled_ = false;  ///< some fibre, in this iteration
+  bool mayShift_;         ///< not where forces ask for placements, which a shift may not move
   /// What Newton's method may leave, as a share of the error of a part; how little it matters:
   /// decision 092.
   static constexpr double negligible = 0.0075;

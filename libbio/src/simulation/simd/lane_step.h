@@ -41,11 +41,12 @@ class StepSolver final : public LaneSolver<Here> {
   };
   struct MuscleSums {
     Real force, dTau, eliminated, carried;
+    Mask settled;  ///< lanes in which a fibre was
   };
   void addMuscles(LaneStep<Here>& step, const Mask& running, const Moving& moving,
                   MuscleSums& sums);
   void settleFibre(int i, const Real& pathLength, const Mask& running, LaneStep<Here>& step,
-                   const Moving& moving, Rate& rate) const;
+                   const Moving& moving, Rate& rate, Mask& anySettled) const;
   void addRigid(const AnyLaneMuscle& law, MuscleStep<Here>& kept, const PathJet& path,
                 const Moving& moving, MuscleSums& sums);
   Real correctFibres(LaneStep<Here>& step, const Real& dq);
@@ -67,7 +68,7 @@ inline void StepSolver::addMuscles(LaneStep<Here>& step, const Mask& running, co
       continue;
     }
     Rate r;
-    settleFibre(i, path.length, running, step, moving, r);
+    settleFibre(i, path.length, running, step, moving, r, sums.settled);
     sums.force -= r.tendonForce.v * path.slope;
     sums.dTau -= r.dF_dMuscleTendonLength.v / 2 * path.slope * path.slope;
     sums.dTau -= r.tendonForce.v / 2 * path.curvature;
@@ -82,7 +83,8 @@ inline void StepSolver::addMuscles(LaneStep<Here>& step, const Mask& running, co
 /// See VariationalStepper::settleFibre. Lanes that are done with it keep their end, and with that
 /// their rate.
 inline void StepSolver::settleFibre(int i, const Real& pathLength, const Mask& running,
-                                    LaneStep<Here>& step, const Moving& moving, Rate& rate) const {
+                                    LaneStep<Here>& step, const Moving& moving, Rate& rate,
+                                    Mask& anySettled) const {
   constexpr double settled = 1e-9;
   constexpr int mostTries = 20;
   constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -102,6 +104,7 @@ inline void StepSolver::settleFibre(int i, const Real& pathLength, const Mask& r
     unsettled &= absolute(correction) * system_.muscles[i].perFibre > enough;
     if (!any(unsettled) || tries == mostTries) return;
     enough = same(settled);
+    anySettled |= unsettled;
     const Mask falls = correction < 0;
     high = choose(unsettled & falls, end, high);
     low = choose(unsettled & ~falls, end, low);
@@ -167,7 +170,7 @@ inline void StepSolver::solve(LaneStep<Here>& step) {
     PassiveForce<Here> passive{none, none, none};
     if (system.hasForces) passiveForce(system, running, q_m, v, passive);
     const Real dPassive = passive.dForce_dq / 2 + passive.dForce_dqDot / h;
-    MuscleSums sums{none, dPassive, none, none};
+    MuscleSums sums{none, dPassive, none, none, running ^ running};
     Real bold = same(1e-6);
     for (int l = 0; l < width; ++l) {
       if (step.iterations[l] == 0) bold[l] = 1e-4;
@@ -193,8 +196,9 @@ inline void StepSolver::solve(LaneStep<Here>& step) {
           choose(running, kept.fibreLengthEnd + shorten * kept.residual, kept.fibreLengthEnd);
     }
     const Real correction = larger(size, fibreSize);
-    const Mask last = running & isLast(correction, choose(shorten == 1, step.previous, none),
-                                       step.newtonTolerance);
+    const Mask last =
+        running & isLast(correction, choose((shorten == 1) & ~sums.settled, step.previous, none),
+                         step.newtonTolerance);
     step.previous = correction;
     for (int l = 0; l < width; ++l) {
       if (step.wanted[l] != 0 && ++step.iterations[l] >= step.maxIterations) running[l] = 0;
