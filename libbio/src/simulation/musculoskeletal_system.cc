@@ -92,6 +92,27 @@ std::vector<FoundPath> findPaths(const Model& model, const Skeleton& skeleton,
   return found;
 }
 
+/// A muscle of any class on its path.
+/// @param curves, others  own what a muscle of Schutte's class, or of another, refers to
+SystemMuscle simulated(const Muscle& muscle, MusclePath path, const SchutteOptions& options,
+                       std::vector<std::unique_ptr<const SchutteCurves>>& curves,
+                       std::vector<std::unique_ptr<const muscles::AnyMuscle>>& others) {
+  try {
+    if (muscle.schutte) {
+      const SchutteParameters& s = *muscle.schutte;
+      curves.push_back(std::make_unique<const SchutteCurves>(s));
+      const SchutteMuscle<double> law(schutteQuantities(s), *curves.back(), options);
+      const SchutteActivation<double> activation{s.timeScale, s.activation1, s.activation2};
+      return {muscle.name, SimulatedMuscle(law), ActivationDynamics(activation), std::move(path)};
+    }
+    others.push_back(std::make_unique<const muscles::AnyMuscle>(muscles::compile(*muscle.hill)));
+    return {muscle.name, SimulatedMuscle(*others.back()),
+            ActivationDynamics(muscles::activationOf(*muscle.hill)), std::move(path)};
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(fmt::format("muscle '{}': {}", muscle.name, e.what()));
+  }
+}
+
 }  // namespace
 
 MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOptions& options)
@@ -250,26 +271,7 @@ MusculoskeletalSystem::MusculoskeletalSystem(const Model& model, const SystemOpt
     }
     for (const std::string& note : path.notes()) notes_.push_back(note);
     addSwitches(path);
-    try {
-      if (muscle.schutte) {
-        const SchutteParameters& s = *muscle.schutte;
-        curves_.push_back(std::make_unique<const SchutteCurves>(s));
-        muscles_.push_back({muscle.name,
-                            SimulatedMuscle(SchutteMuscle<double>(schutteQuantities(s),
-                                                                  *curves_.back(), options.muscle)),
-                            ActivationDynamics(SchutteActivation<double>{s.timeScale, s.activation1,
-                                                                         s.activation2}),
-                            std::move(path)});
-      } else {
-        others_.push_back(
-            std::make_unique<const muscles::AnyMuscle>(muscles::compile(*muscle.hill)));
-        muscles_.push_back({muscle.name, SimulatedMuscle(*others_.back()),
-                            ActivationDynamics(muscles::activationOf(*muscle.hill)),
-                            std::move(path)});
-      }
-    } catch (const std::invalid_argument& e) {
-      throw std::invalid_argument(fmt::format("muscle '{}': {}", muscle.name, e.what()));
-    }
+    muscles_.push_back(simulated(muscle, std::move(path), options.muscle, curves_, others_));
   }
   for (std::string& note : unmovedMuscles(unmoved)) notes_.push_back(std::move(note));
   addElasticPaths(model, options, like, postures);

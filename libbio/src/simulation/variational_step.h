@@ -144,8 +144,8 @@ class VariationalStepper {
       end.q += shorten * dq;
       end.fibreLength += shorten * residual_;
       const double correction = std::max(size, fibreSize);
-      if (settled_) previous = 0;  // what the fibres make of this correction it does not tell
-      if (isEnough(result.iterations, correction, shorten == 1 ? previous : 0)) {
+      // where a fibre settled, the one before does not tell what it makes of this one
+      if (isEnough(result.iterations, correction, shorten == 1 && !settled_ ? previous : 0)) {
         finish(begin, h, share, {Mv, dq, dMv, dL_q, dPassive}, L_q, dTau, R, end, result);
         result.converged = true;
         failedPosture_.resize(0);

@@ -132,8 +132,8 @@ TEST(CostGradient, IsTheForwardOneWhereStepsAreHalvedAndSplit) {
   const ParameterCatalogue catalogue(elbow.model, elbow.system,
                                      {Eigen::VectorXd::Constant(1, 0.75), {}});
   SimulationOptions options = forSeconds(0.5);
-  options.step = 0.02;
-  options.maxIterations = 5;
+  options.step = 0.05;
+  options.maxIterations = 3;
   stepping::StepTape tape;
   stepping::simulateVariational(elbow.system, excitation,
                                 startOf(elbow.system, catalogue.nominal(), excitation, 0), options,

@@ -99,8 +99,8 @@ TEST(CoupledSensitivity, MatchesDifferencesWhereStepsAreHalved) {
   const ExcitationSignal excitation(times, u);
   const ParameterCatalogue catalogue(model, system, {Eigen::VectorXd::Constant(1, 0.75), {}});
   SimulationOptions options = forSeconds(0.5);
-  options.step = 0.02;
-  options.maxIterations = 5;
+  options.step = 0.05;
+  options.maxIterations = 3;
   const stepping::StepTape tape =
       tapeOf(system, excitation, startOf(system, catalogue.nominal(), excitation, 0), options);
   EXPECT_GT(timesWithLaw(tape, stepping::StepTape::Time::Law::middle), 0);

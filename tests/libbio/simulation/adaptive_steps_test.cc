@@ -62,7 +62,9 @@ int firstRefused(double step, double h, const Motion& q) {
   };
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(begin.fibreLength.size());
   for (int k = 1; k <= 12; ++k) {
-    const stepping::LastParts<1> last{meanSpeed(k - 1), meanSpeed(k - 2), still, still, h, h};
+    stepping::LastParts<1> last{
+        stepping::LastEnds(meanSpeed(k - 1)), stepping::LastEnds<Eigen::VectorXd>(still), {h, h}};
+    last.q.velocityBefore = meanSpeed(k - 2);
     begin.q[0] = q((k - 1) * h);
     end.q[0] = q(k * h);
     if (!control.accepts(h, begin, end, last)) return k;

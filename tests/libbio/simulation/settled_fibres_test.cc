@@ -1,9 +1,11 @@
-// Fibres whose own equation is solved before the system's, and paths that several threads find.
+// What makes steps cheap: first guesses, fibres whose own equation is solved before the system's,
+// and paths that several threads find.
 #include <gtest/gtest.h>
 
 #include "bio/path/posture_samples.h"
 #include "bio/simulation/simulate.h"
 #include "libbio/simulation/arm_of_seven.h"
+#include "simulation/first_guess.h"
 #include "support/shipped_elbow.h"
 
 namespace bio {
@@ -39,6 +41,30 @@ TEST(SettledFibres, TakeFewIterationsOfTheSystem) {
 // A smooth motion needs none of it: two iterations a step, the second for the last digits.
 TEST(SettledFibres, CostASmoothMotionNothing) {
   EXPECT_LT(effortOf("elbow8", 0.0025).perStep, 2.05);
+}
+
+// Over parts of any length; with less than three parts behind it a parabola and a straight line.
+TEST(FirstGuess, IsTheCubicThroughTheLastEnds) {
+  const auto x = [](double t) { return 0.3 - 2 * t + 5 * t * t + 7 * t * t * t; };
+  const std::vector<double> parts = {0.02, 0.01, 0.005, 0.03, 0.02, 0.04};
+  stepping::PartLengths lengths{parts[0], parts[0]};
+  stepping::LastEnds<double> ends(-2);
+  double t = 0, guess = 0;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const double h = parts[k];
+    ends.guess(h, lengths, x(t), guess);
+    const double error = std::abs(guess - x(t + h));
+    if (k == 0) {
+      EXPECT_NEAR(guess, x(t) - 2 * h, 1e-15);
+    } else if (k < 3) {
+      EXPECT_GT(error, 1e-6) << k;
+    } else {
+      EXPECT_LT(error, 1e-14) << k;
+    }
+    ends.add(h, lengths, x(t), x(t + h));
+    lengths.add(h);
+    t += h;
+  }
 }
 
 TEST(PathsByThreads, AreThoseOfOneThread) {

@@ -162,11 +162,12 @@ TEST(SimulateTogether, DoesNotDependOnTheProcessorToTheLastBit) {
 // as it would alone, the latter is what simulate() makes of it, the others unchanged.
 TEST(SimulateTogether, HalvesStepsAndLeavesFailuresToSimulate) {
   const ShippedElbow elbow;
-  Drawn drawn(elbow, muscleNumbers, 0.02, 3, 0.12);  // of twelve steps, fewer than it may halve
+  Drawn drawn(elbow, muscleNumbers, 0.02, 3, 0.12);  // of four steps, fewer than it may halve
   drawn.options.maxIterations = 4;
+  drawn.options.step = 0.03;
   const auto expected = simulateTogether(drawn.jobs, drawn.options);
   SystemState flung = *drawn.jobs[1].start;
-  flung.qDot[0] = 40;
+  flung.qDot[0] = 300;
   std::vector<LaneJob> jobs = drawn.jobs;
   jobs[1].start = &flung;
   for (const int halvings : {8, 0}) {
