@@ -71,7 +71,10 @@ double secondsAlone(const bio::Model& model, const std::string& coordinate,
   for (const std::string& name : names) {
     if (catalogue.has(name)) selection.push_back(catalogue.find(name));
   }
-  const std::vector<bio::ObservedSeries> measured = {{{Kind::coordinate, coordinate, 0}, times}};
+  std::vector<bio::ObservedSeries> measured(1);
+  measured[0].what.kind = Kind::coordinate;
+  measured[0].what.object = coordinate;
+  measured[0].times = times;
   const Iteration one{
       {catalogue, options, excitation(system.numMuscles()), measured, selection, simulation},
       catalogue.values(selection)};

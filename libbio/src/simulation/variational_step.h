@@ -144,7 +144,6 @@ class VariationalStepper {
       end.q += shorten * dq;
       end.fibreLength += shorten * residual_;
       const double correction = std::max(size, fibreSize);
-      // where a fibre settled, the one before does not tell what it makes of this one
       if (isEnough(result.iterations, correction, shorten == 1 && !settled_ ? previous : 0)) {
         finish(begin, h, share, {Mv, dq, dMv, dL_q, dPassive}, L_q, dTau, R, end, result);
         result.converged = true;
@@ -340,8 +339,9 @@ class VariationalStepper {
   SystemConfiguration<N> configuration_;
   OtherForces<N> others_;
   bool symmetric_;
-  bool settled_ = false;  ///< some fibre, in this iteration
-  bool mayShift_;         ///< not where forces ask for placements, which a shift may not move
+  /// A fibre did, in this iteration: the correction before does not tell what it makes of this.
+  bool settled_ = false;
+  bool mayShift_;  ///< not where forces ask for placements, which a shift may not move
   /// What Newton's method may leave, as a share of the error of a part; how little it matters:
   /// decision 092.
   static constexpr double negligible = 0.0075;
