@@ -84,8 +84,7 @@ void sayReference(const CompareFindings& f, Methods& methods) {
                             numberText(100 * (f.options.stepResolution - 1), 2)));
   }
   methods.say(Methods::Part::simulation,
-              fmt::format("Times are medians of at least {}.",
-                          counted(static_cast<std::size_t>(f.options.timings), "run")));
+              fmt::format("Times are medians of at least {}.", counted(f.options.timings, "run")));
 }
 
 }  // namespace

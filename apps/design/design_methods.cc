@@ -57,19 +57,16 @@ void saySearch(const DesignOptions& typed, bool hasGradients, Methods& methods) 
   const bio::DesignSearchSettings& settings = typed.settings;
   std::vector<std::string> stages;
   std::vector<Publication> cited;
-  if (settings.candidates > 0)
-    stages.push_back(counted(static_cast<std::size_t>(settings.candidates), "random design"));
+  if (settings.candidates > 0) stages.push_back(counted(settings.candidates, "random design"));
   if (settings.generations > 0) {
-    stages.push_back(
-        fmt::format("{} of CMA-ES ({}) from the best of them",
-                    counted(static_cast<std::size_t>(settings.generations), "generation"),
-                    citation(Publication::hansen2016)));
+    stages.push_back(fmt::format("{} of CMA-ES ({}) from the best of them",
+                                 counted(settings.generations, "generation"),
+                                 citation(Publication::hansen2016)));
     cited.push_back(Publication::hansen2016);
   }
   if (hasGradients && settings.iterations > 0) {
     stages.push_back(
-        fmt::format("{} along exact gradients",
-                    counted(static_cast<std::size_t>(settings.iterations), "iteration")));
+        fmt::format("{} along exact gradients", counted(settings.iterations, "iteration")));
   }
   if (stages.empty()) return;
   methods.say(Methods::Part::inference,

@@ -85,7 +85,7 @@ void sayDiscoveryInSets(const ModelDiscoveryRequest& each, std::size_t sets, Met
       Methods::Part::inference,
       fmt::format("{} data sets were searched for missing effects, each by itself, with at most {} "
                   "in one hypothesis and {}; the report of each set has its methods.",
-                  sets, counted(static_cast<std::size_t>(each.maxEffects), "effect"),
+                  sets, counted(each.maxEffects, "effect"),
                   each.noise ? fmt::format("a noise of {} deg", numberText(*each.noise))
                              : std::string("the noise estimated from its data")));
 }

@@ -142,13 +142,13 @@ void sayMotion(const MotionRequest& request, const MotionResult& found, Methods&
                                 numberText(found.before.step)));
   sayObjective(request, found, methods);
   sayStart(request, methods);
-  methods.say(Methods::Part::inference,
-              fmt::format("It descends along exact gradients with the projection operator ({}), "
-                          "whose gains are those of a linear-quadratic regulator, and Armijo's "
-                          "rule for the step; it made {} ({}).",
-                          citation(Publication::wilson),
-                          counted(static_cast<std::size_t>(found.search.iterations), "iteration"),
-                          info::describe(found.search.why)));
+  methods.say(
+      Methods::Part::inference,
+      fmt::format("It descends along exact gradients with the projection operator ({}), "
+                  "whose gains are those of a linear-quadratic regulator, and Armijo's "
+                  "rule for the step; it made {} ({}).",
+                  citation(Publication::wilson), counted(found.search.iterations, "iteration"),
+                  info::describe(found.search.why)));
   if (found.trialsBefore) {
     sayMonteCarlo(found.trialsBefore->result.trials.size(), request.seed,
                   "for the initial motion and for the optimised one", methods);

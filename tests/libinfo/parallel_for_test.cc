@@ -18,7 +18,7 @@ std::size_t threadsOf(int asked) {
   std::mutex mutex;
   std::set<std::thread::id> seen;
   parallelFor(64, asked, [&](int) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(3));
     const std::lock_guard lock(mutex);
     seen.insert(std::this_thread::get_id());
   });

@@ -157,8 +157,9 @@ class VariationalRun {
     player_.advance(t0, tMiddle, activation_);
     middle_ = activation_;
     player_.advance(tMiddle, t1, activation_);
-    last_.q.guess(h, last_.lengths, now_.q, next_.q);
-    last_.fibreLength.guess(h, last_.lengths, now_.fibreLength, next_.fibreLength);
+    const GuessWeights weights = last_.lengths.weights(h);
+    next_.q = last_.q.guess(weights, now_.q);
+    next_.fibreLength = last_.fibreLength.guess(weights, now_.fibreLength);
     options_.prescribed.place(t1, next_.q);
     result_ = stepper_.solve(h, tMiddle, now_, middle_, next_);
     count(result_.iterations);

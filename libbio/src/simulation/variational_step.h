@@ -8,6 +8,7 @@
 
 #include "simulation/coordinate_sums.h"
 #include "simulation/integrators.h"
+#include "simulation/newton_limits.h"
 #include "simulation/other_forces.h"
 #include "simulation/step_control.h"
 
@@ -82,7 +83,7 @@ class VariationalStepper {
     for (result.iterations = 1; result.iterations <= options_.maxIterations; ++result.iterations) {
       q_m = (begin.q + end.q) / 2;
       v = (end.q - begin.q) / h;
-      if (result.iterations > 1 && mayShift_ && (q_m - at).cwiseAbs().maxCoeff() < near) {
+      if (result.iterations > 1 && mayShift_ && (q_m - at).cwiseAbs().maxCoeff() < newton::near) {
         dq = q_m - place;
         configuration_.shift(dq);
       } else {
@@ -134,13 +135,10 @@ class VariationalStepper {
         return result;
       }
 
-      // trust limits: a step of the system or of a fibre that is too bold is shortened as a whole
-      double shorten = 1;
-      double size = dq.cwiseAbs().maxCoeff();
-      if (size > largestTurn) shorten = largestTurn / size;
+      const double size = dq.cwiseAbs().maxCoeff();
       const double fibreSize = correctFibres(dq);
       if (!(fibreSize < 1e6)) return result;
-      if (fibreSize * shorten > largestFibreStep) shorten = largestFibreStep / fibreSize;
+      const double shorten = shareWithinLimits(size, fibreSize);
       end.q += shorten * dq;
       end.fibreLength += shorten * residual_;
       const double correction = std::max(size, fibreSize);
@@ -160,7 +158,7 @@ class VariationalStepper {
   /// @param previous  the correction before, 0: none that tells
   bool isLast(double correction, double previous) const {
     if (correction < options_.newtonTolerance) return true;
-    if (correction > worthwhile || correction > 0.1 * previous) return false;
+    if (correction > newton::worthwhile || correction > 0.1 * previous) return false;
     const double ratio = correction / previous;
     return correction * ratio * ratio < 0.01 * options_.newtonTolerance;
   }
@@ -192,15 +190,13 @@ class VariationalStepper {
   }
 
  private:
-  /// Reach of shift() [rad] or [m]: it changes the motion by at most 1e-11 rad; with 1e-5
-  /// it would be more (elbow8, three trials).
-  static constexpr double near = 7e-6;
-  static constexpr double worthwhile = 1e-4;        ///< corrections above are always followed
-  static constexpr double largestTurn = 0.3;        ///< [rad] per iteration
-  static constexpr double largestFibreStep = 0.25;  ///< of ℓ0 per iteration
-  // fibres' corrections, of ℓ0 (decision 095): one by one above the first two, down to the third
-  static constexpr double boldFirst = 1e-4, bold = 1e-6, settled = 1e-9;
-  static constexpr int mostTries = 20;
+  /// A correction of the system or of a fibre that is too bold is shortened as a whole.
+  static double shareWithinLimits(double size, double fibreSize) {
+    double share = 1;
+    if (size > newton::largestTurn) share = newton::largestTurn / size;
+    if (fibreSize * share > newton::largestFibreStep) share = newton::largestFibreStep / fibreSize;
+    return share;
+  }
 
   struct Moving {
     const Vector& v;
@@ -234,30 +230,39 @@ class VariationalStepper {
   }
 
   /// Rate, residual and 1/J of a fibre that ends at `end`, for this iteration's length of the path.
-  /// Where its correction would be a bold one, the fibre's own equation is solved first, by
-  /// Newton's method within a bracket (its residual rises with `end`): that takes a rate of one
-  /// muscle at a time, where the system's iteration takes every path. On a stiff tendon a fibre
-  /// that is hardly active needs it up to eight times.
+  /// Returns its correction by itself [m].
+  double evaluateFibre(std::size_t i, double begin, double activation, double pathLength, double h,
+                       double end) {
+    const auto si = static_cast<Eigen::Index>(i);
+    const double velocity = (end - begin) / h;
+    rate_[i] = system_.muscles()[i].muscle.rateNear(activation, (begin + end) / 2, pathLength,
+                                                    velocity, h, pieces_[i]);
+    residual_[si] = velocity - rate_[i].fibreVelocity;
+    inverse_[si] = 1 / (1 / h - rate_[i].dV_dFibreLength / 2);
+    return -residual_[si] * inverse_[si];
+  }
+
+  /// evaluateFibre(); where the correction would be a bold one, the fibre's own equation is solved
+  /// first, by Newton's method within a bracket (its residual rises with `end`): that takes a rate
+  /// of one muscle at a time, where the system's iteration takes every path. On a stiff tendon a
+  /// fibre that is hardly active needs up to eleven.
   void settleFibre(std::size_t i, double begin, double activation, double pathLength,
                    const Moving& step, double& end) {
-    const auto si = static_cast<Eigen::Index>(i);
-    const SimulatedMuscle& muscle = system_.muscles()[i].muscle;
+    const double perFibre = system_.muscles()[i].muscle.perFibre();
+    const auto isAbove = [&](double correction, double limit) {
+      return std::abs(correction) * perFibre > limit;
+    };
+    double correction = evaluateFibre(i, begin, activation, pathLength, step.h, end);
+    if (!isAbove(correction, step.isFirst ? newton::boldAtFirst : newton::bold)) return;
+    settled_ = true;
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
-    double enough = step.isFirst ? boldFirst : bold;
-    for (int tries = 0;; ++tries) {
-      const double velocity = (end - begin) / step.h;
-      rate_[i] =
-          muscle.rateNear(activation, (begin + end) / 2, pathLength, velocity, step.h, pieces_[i]);
-      residual_[si] = velocity - rate_[i].fibreVelocity;
-      inverse_[si] = 1 / (1 / step.h - rate_[i].dV_dFibreLength / 2);
-      const double correction = -residual_[si] * inverse_[si];
-      if (!(std::abs(correction) * muscle.perFibre() > enough) || tries == mostTries) return;
-      enough = settled;
-      settled_ = true;
+    for (int tries = 0; tries < newton::mostTries; ++tries) {
       (correction < 0 ? high : low) = end;
       end += correction;
       if (!(low < end && end < high)) end = (low + high) / 2;
+      correction = evaluateFibre(i, begin, activation, pathLength, step.h, end);
+      if (!isAbove(correction, newton::settled)) return;
     }
   }
 

@@ -47,7 +47,6 @@ LaneDriver::LaneDriver(const MusculoskeletalSystem& system, const ExcitationSign
       lengths_{options.step, options.step},
       lastQ_(start.qDot[0]),
       fibre_(start.fibreLength),
-      fibreGuess_(fibre_),
       lastFibre_(Eigen::VectorXd::Zero(fibre_.size())),
       activation_(start.activation),
       middle_(activation_),
@@ -68,20 +67,16 @@ bool LaneDriver::ask(int lane, LaneStep<Of>& step) {
     chooseActivation();
   }
   const double h = t1_ - t0_;
-  double guess = q_;
-  fibreGuess_ = fibre_;
-  if (!fromRest_) {
-    lastQ_.guess(h, lengths_, q_, guess);
-    lastFibre_.guess(h, lengths_, fibre_, fibreGuess_);
-  }
+  const stepping::GuessWeights weights = fromRest_ ? stepping::GuessWeights() : lengths_.weights(h);
   step.length[lane] = h;
   step.q[lane] = q_;
   step.p[lane] = p_;
-  step.qEnd[lane] = guess;
+  step.qEnd[lane] = lastQ_.guess(weights, q_);
   for (Index i = 0; i < fibre_.size(); ++i) {
     MuscleStep<Of>& muscle = step.muscles[i];
     muscle.fibreLength[lane] = fibre_[i];
-    muscle.fibreLengthEnd[lane] = fibreGuess_[i];
+    muscle.fibreLengthEnd[lane] = weights.guess(fibre_[i], lastFibre_.velocity[i],
+                                                lastFibre_.velocityBefore[i], lastFibre_.third[i]);
     muscle.activation[lane] = middle_[i];
   }
   if (!options_->externalForce.empty()) {

@@ -104,7 +104,7 @@ class LaneDriver {
   stepping::LastEnds<double> lastQ_;
   double lastJump_ = -std::numeric_limits<double>::infinity();  ///< of a length [s]
   std::optional<stepping::SwitchSides<1>> sides_;               ///< where there are switches
-  Eigen::VectorXd fibre_, fibreGuess_;
+  Eigen::VectorXd fibre_;
   stepping::LastEnds<Eigen::VectorXd> lastFibre_;
   Eigen::VectorXd activation_, middle_, kept_;  ///< at the end, the middle, the begin of the step
   // the end that was last taken

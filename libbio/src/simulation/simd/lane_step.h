@@ -4,19 +4,22 @@
 
 #include <limits>
 
+#include "simulation/newton_limits.h"
 #include "simulation/simd/lane_muscle.h"
 #include "simulation/simd/lane_path.h"
 
 namespace bio::lanes {
 namespace {
 
+namespace newton = stepping::newton;
+
 /// Newton's corrections fall quadratically: is the next one within the tolerance? See
 /// VariationalStepper::isLast.
 inline Mask isLast(const Real& correction, const Real& previous, double tolerance) {
-  constexpr double worthwhile = 1e-4;
   const Real ratio = correction / previous;
-  return (correction < tolerance) | ((correction <= worthwhile) & (correction <= 0.1 * previous) &
-                                     (correction * ratio * ratio < 0.01 * tolerance));
+  return (correction < tolerance) |
+         ((correction <= newton::worthwhile) & (correction <= 0.1 * previous) &
+          (correction * ratio * ratio < 0.01 * tolerance));
 }
 
 /// The step's solver for some systems, with their muscles' laws.
@@ -45,8 +48,10 @@ class StepSolver final : public LaneSolver<Here> {
   };
   void addMuscles(LaneStep<Here>& step, const Mask& running, const Moving& moving,
                   MuscleSums& sums);
-  void settleFibre(int i, const Real& pathLength, const Mask& running, LaneStep<Here>& step,
-                   const Moving& moving, Rate& rate, Mask& anySettled) const;
+  Real evaluateFibre(int i, const Real& pathLength, LaneStep<Here>& step, const Moving& moving,
+                     Rate& rate) const;
+  void settleFibre(int i, const Real& pathLength, Mask unsettled, Real correction,
+                   LaneStep<Here>& step, const Moving& moving, Rate& rate) const;
   void addRigid(const AnyLaneMuscle& law, MuscleStep<Here>& kept, const PathJet& path,
                 const Moving& moving, MuscleSums& sums);
   Real correctFibres(LaneStep<Here>& step, const Real& dq);
@@ -68,7 +73,12 @@ inline void StepSolver::addMuscles(LaneStep<Here>& step, const Mask& running, co
       continue;
     }
     Rate r;
-    settleFibre(i, path.length, running, step, moving, r, sums.settled);
+    const Real correction = evaluateFibre(i, path.length, step, moving, r);
+    const Mask isBold = running & (absolute(correction) * muscle.perFibre > moving.bold);
+    if (any(isBold)) [[unlikely]] {
+      sums.settled |= isBold;
+      settleFibre(i, path.length, isBold, correction, step, moving, r);
+    }
     sums.force -= r.tendonForce.v * path.slope;
     sums.dTau -= r.dF_dMuscleTendonLength.v / 2 * path.slope * path.slope;
     sums.dTau -= r.tendonForce.v / 2 * path.curvature;
@@ -80,37 +90,38 @@ inline void StepSolver::addMuscles(LaneStep<Here>& step, const Mask& running, co
   }
 }
 
-/// See VariationalStepper::settleFibre. Lanes that are done with it keep their end, and with that
-/// their rate.
-inline void StepSolver::settleFibre(int i, const Real& pathLength, const Mask& running,
-                                    LaneStep<Here>& step, const Moving& moving, Rate& rate,
-                                    Mask& anySettled) const {
-  constexpr double settled = 1e-9;
-  constexpr int mostTries = 20;
-  constexpr double infinite = std::numeric_limits<double>::infinity();
+/// See VariationalStepper::evaluateFibre.
+[[gnu::always_inline]] inline Real StepSolver::evaluateFibre(int i, const Real& pathLength,
+                                                             LaneStep<Here>& step,
+                                                             const Moving& moving,
+                                                             Rate& rate) const {
   MuscleStep<Here>& kept = step.muscles[i];
-  const Real& h = step.length;
-  Real& end = kept.fibreLengthEnd;
+  const Real l_m = (kept.fibreLength + kept.fibreLengthEnd) / 2;
+  const Real v = (kept.fibreLengthEnd - kept.fibreLength) / step.length;
+  laws_[i].rate({kept.activation, l_m, pathLength, v, step.length}, rate);
+  kept.residual = v - rate.fibreVelocity.v;
+  kept.inverse = 1 / (moving.perStep - rate.dV_dFibreLength.v / 2);
+  return -kept.residual * kept.inverse;
+}
+
+/// See VariationalStepper::settleFibre. Lanes that are not unsettled, or no longer, keep their end,
+/// and with that their rate. Apart from what every muscle does, so that this stays quick.
+[[gnu::noinline]] void StepSolver::settleFibre(int i, const Real& pathLength, Mask unsettled,
+                                               Real correction, LaneStep<Here>& step,
+                                               const Moving& moving, Rate& rate) const {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Real& end = step.muscles[i].fibreLengthEnd;
   Real low = same(-infinite);
   Real high = same(infinite);
-  Real enough = moving.bold;
-  Mask unsettled = running;
-  for (int tries = 0;; ++tries) {
-    const Real v = (end - kept.fibreLength) / h;
-    laws_[i].rate({kept.activation, (kept.fibreLength + end) / 2, pathLength, v, h}, rate);
-    kept.residual = v - rate.fibreVelocity.v;
-    kept.inverse = 1 / (moving.perStep - rate.dV_dFibreLength.v / 2);
-    const Real correction = -kept.residual * kept.inverse;
-    unsettled &= absolute(correction) * system_.muscles[i].perFibre > enough;
-    if (!any(unsettled) || tries == mostTries) return;
-    enough = same(settled);
-    anySettled |= unsettled;
+  for (int tries = 0; tries < newton::mostTries && any(unsettled); ++tries) {
     const Mask falls = correction < 0;
     high = choose(unsettled & falls, end, high);
     low = choose(unsettled & ~falls, end, low);
     const Real next = end + correction;
     const Real within = choose((low < next) & (next < high), next, (low + high) / 2);
     end = choose(unsettled, within, end);
+    correction = evaluateFibre(i, pathLength, step, moving, rate);
+    unsettled &= absolute(correction) * system_.muscles[i].perFibre > newton::settled;
   }
 }
 
@@ -143,15 +154,16 @@ inline Real StepSolver::correctFibres(LaneStep<Here>& step, const Real& dq) {
 /// See VariationalStepper::solve, whose comments are not repeated.
 inline void StepSolver::solve(LaneStep<Here>& step) {
   const LaneModel<Here>& system = system_;
-  constexpr double largestTurn = 0.3;
-  constexpr double largestFibreStep = 0.25;
-  constexpr double near = 7e-6;
   const Real none = same(0);
   const Real real = same(1);
   const Real& h = step.length;
   const Real perStep = 1 / h;
   const Real share = step.symmetric ? h / 2 : h;
   const Real dMv = system.mass * perStep;
+  Real bold = same(newton::bold);  // of the iteration that comes
+  for (int l = 0; l < width; ++l) {
+    if (step.iterations[l] == 0) bold[l] = newton::boldAtFirst;
+  }
   Mask running = step.wanted;
   step.converged = running ^ running;
   while (all(running == step.wanted)) {
@@ -160,7 +172,7 @@ inline void StepSolver::solve(LaneStep<Here>& step) {
     const SineCosine turn = sineCosine(q_m);
     // the last small changes leave the points of paths as they are, or an iteration that ends at
     // a conditional one would go to and fro
-    step.place = choose(absolute(q_m - step.place) < near, step.place, q_m);
+    step.place = choose(absolute(q_m - step.place) < newton::near, step.place, q_m);
 
     // skeleton and gravity
     const Real Mv = system.mass * v;
@@ -171,11 +183,8 @@ inline void StepSolver::solve(LaneStep<Here>& step) {
     if (system.hasForces) passiveForce(system, running, q_m, v, passive);
     const Real dPassive = passive.dForce_dq / 2 + passive.dForce_dqDot / h;
     MuscleSums sums{none, dPassive, none, none, running ^ running};
-    Real bold = same(1e-6);
-    for (int l = 0; l < width; ++l) {
-      if (step.iterations[l] == 0) bold[l] = 1e-4;
-    }
     addMuscles(step, running, {v, perStep, share, bold, turn}, sums);
+    bold = same(newton::bold);
     Real& force = sums.force;
     const Real& dTau = sums.dTau;
 
@@ -187,8 +196,9 @@ inline void StepSolver::solve(LaneStep<Here>& step) {
     // what is not a number, or wild, is given up
     running &= (size < 1e6) & (fibreSize < 1e6);
 
-    Real shorten = choose(size > largestTurn, largestTurn / size, real);
-    shorten = choose(fibreSize * shorten > largestFibreStep, largestFibreStep / fibreSize, shorten);
+    Real shorten = choose(size > newton::largestTurn, newton::largestTurn / size, real);
+    shorten = choose(fibreSize * shorten > newton::largestFibreStep,
+                     newton::largestFibreStep / fibreSize, shorten);
     step.qEnd = choose(running, step.qEnd + shorten * dq, step.qEnd);
     for (int i = 0; i < system.numMuscles; ++i) {
       MuscleStep<Here>& kept = step.muscles[i];
