@@ -85,7 +85,8 @@ class Curves {
 
   showFit(state, trial, result, channel) {
     const fit = document.getElementById("fit");
-    const speed = `One simulation: ${result.milliseconds.toFixed(result.milliseconds < 10 ? 1 : 0)} ms`;
+    const draft = result.asked.isDraft && `Draft while a slider moves, steps of ${result.asked.step} s`;
+    const speed = `${draft || "One simulation"}: ${result.milliseconds.toFixed(result.milliseconds < 10 ? 1 : 0)} ms`;
     if (channel.measured < 0) {
       fit.textContent = `${channel.name} was not measured. ${speed}.`;
       return;

@@ -48,19 +48,38 @@
     integrator: data.integrators.findIndex(i => i.name === state.integrator), step: state.step, time: state.time,
   });
 
+  // While a slider moves, a simulation that takes long is replaced by a draft: vi with longer steps, so that the limb
+  // follows the hand. What was asked for is simulated once the slider rests.
+  const fluent = 80, rest = 250;      // [ms]
+  const steps = [...new Set([0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, data.step])].sort((a, b) => a - b);
+  let draftStep = steps.indexOf(0.02);
+  let lastMilliseconds = 0;           // of a simulation that was no draft
+  const draft = () => ({ ...request(), integrator: data.integrators.findIndex(i => i.name === "vi"), step: steps[draftStep], isDraft: true });
+  const mayBeDraft = () => lastMilliseconds > fluent && (state.integrator !== "vi" || state.step < steps[draftStep]);
+  function tuneDrafts(milliseconds) {
+    if (milliseconds > fluent && draftStep < steps.length - 1) ++draftStep;
+    if (milliseconds < fluent / 3 && draftStep > 0) --draftStep;
+  }
+
   // One simulation at a time; what changes meanwhile is simulated next.
-  let isRunning = false, isWanted = false;
-  const simulated = [];  // who waits for the next result
-  async function simulate() {
+  let isRunning = false, isWanted = false, isMoving = false, resting = 0;
+  const simulated = [];  // who waits for the next result that is no draft
+  async function simulate(moves = false) {
+    clearTimeout(resting);
     isWanted = true;
+    isMoving = moves;
     if (isRunning) return;
     isRunning = true;
+    let isDraft = false;
     while (isWanted) {
       isWanted = false;
-      const asked = request();
+      isDraft = isMoving && mayBeDraft();
+      const asked = isDraft ? draft() : request();
       try {
         const result = await ask("run", asked);
         state.result = { ...result, asked };
+        if (isDraft) tuneDrafts(result.milliseconds);
+        else lastMilliseconds = result.milliseconds;
         trouble(result.why);
         show();
       } catch (error) {
@@ -68,8 +87,10 @@
       }
     }
     isRunning = false;
-    simulated.splice(0).forEach(resolve => resolve(state.result));
+    if (isDraft) resting = setTimeout(simulate, rest);
+    else simulated.splice(0).forEach(resolve => resolve(state.result));
   }
+  const afterDraft = () => state.result.asked.isDraft ? new Promise(resolve => { simulated.push(resolve); simulate(); }) : state.result;
 
   const view = new View($("view"));
   const curves = new Curves(data, colours);
@@ -83,7 +104,7 @@
     sliders.show(state.values);
     if (ellipse) ellipse.show(state.values);
     showCommand();
-    simulate();
+    simulate(true);
   }
 
   function largestActivation() {
@@ -126,7 +147,6 @@
   addOptions($("trial"), data.trials.map((t, i) => [String(i), t.name]), "0");
   $("trialChoice").hidden = data.trials.length < 2;
   addOptions($("integrator"), data.integrators.map(i => [i.name, i.label]), data.integrator);
-  const steps = [...new Set([0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, data.step])].sort((a, b) => a - b);
   addOptions($("step"), steps.map(s => [String(s), `${s} s`]), String(data.step));
   if (data.models.filter(model => model.isShown).length > 1) {
     data.models.forEach((model, i) => {
@@ -204,8 +224,8 @@
   }
   const saveText = (name, text, type) => save(name, URL.createObjectURL(new Blob([text], { type })));
   $("png").onclick = () => { view.render(); save("limb.png", $("view").toDataURL("image/png")); };
-  $("svg").onclick = () => saveText("motion.svg", curves.svg(), "image/svg+xml");
-  $("csv").onclick = () => saveText("motion.csv", curves.csv(state), "text/csv");
+  $("svg").onclick = async () => { await afterDraft(); saveText("motion.svg", curves.svg(), "image/svg+xml"); };
+  $("csv").onclick = async () => { await afterDraft(); saveText("motion.csv", curves.csv(state), "text/csv"); };
   $("copy").onclick = () => navigator.clipboard.writeText($("command").textContent);
 
   // Begin --------------------------------------------------------------------------------------
@@ -228,7 +248,14 @@
     await ask("load", { wasm: await unpacked($("core").textContent), setups });
     await reference();
     setTimeRange();
-    await simulate();
+    if (state.model === 0) {
+      state.result = { ...state.reference, asked: request() };
+      lastMilliseconds = state.result.milliseconds;
+      trouble(state.result.why);
+      show();
+    } else {
+      await simulate();
+    }
     if (ellipse) ellipse.show(state.values);
     performance.mark("first picture");
     document.body.dataset.ready = "yes";

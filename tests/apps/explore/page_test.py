@@ -104,6 +104,34 @@ def tells_the_command(browser, case, sets):
     assert abs(rows[-1][column] - last) <= 1e-9, (rows[-1][column], last)
 
 
+def follows_the_hand_with_drafts(browser, case):
+    """A simulation that takes long is replaced by drafts while a slider moves, and done when it rests."""
+    browser.open(case.page("dragged"))
+    assert browser.wait("document.body.dataset.ready === 'yes'"), browser.log()
+    told = browser.run("""const state = window.explore.state, fit = document.getElementById('fit'), seen = [];
+        const step = document.getElementById('step'), slider = document.querySelectorAll('#sliders input[type=range]')[1];
+        step.value = '0.0002';
+        step.onchange();
+        const until = async is => { while (!is()) await new Promise(resolve => setTimeout(resolve, 5)); };
+        await until(() => state.result.asked.step === 0.0002);
+        for (let k = 1; k <= 20; ++k) {
+          slider.value = state.values[1] * 1.001;
+          slider.dispatchEvent(new Event('input'));
+          const before = state.result;
+          await until(() => state.result !== before);
+          seen.push([state.result.asked.isDraft === true, state.result.asked.step, fit.textContent.includes('Draft')]);
+        }
+        const drafted = state.result.coordinates.at(-1);
+        await until(() => !state.result.asked.isDraft);
+        const rested = state.result, shown = fit.textContent;
+        const again = await window.explore.set({});
+        return {seen, drafted, rested: rested.coordinates.at(-1), again: again.coordinates.at(-1), shown,
+                value: rested.asked.values[1] === state.values[1], step: rested.asked.step};""")
+    assert all(isDraft and 0.0002 < step <= 0.05 and isTold for isDraft, step, isTold in told["seen"]), told
+    assert told["step"] == 0.0002 and told["value"] and "Draft" not in told["shown"], told
+    assert told["again"] == told["rested"] and 0 < abs(told["drafted"] - told["rested"]) < 0.02, told
+
+
 def times(browser, case):
     browser.open(case.page("timed"))
     assert browser.wait("document.body.dataset.ready === 'yes'", 120), browser.log()
@@ -151,6 +179,7 @@ def main():
         print(f"largest difference over {settings} settings: {difference:.3g} rad")
         assert difference <= 1e-9, difference
         tells_the_command(browser, elbow, 1)
+        follows_the_hand_with_drafts(browser, elbow)
         # also with numbers that are set from the start, one with a slider and one without
         numbers = "--set", "BRA.optimal_fiber_length=0.09", "--set", "TRImed.pennation_angle=0.1"
         more = "--parameters", "BRA.optimal_fiber_length,hand.mass"
