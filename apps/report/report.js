@@ -62,13 +62,18 @@
     return high - low < 1e-9 * size ? [low - 0.1 * size, high + 0.1 * size] : usual(low, high);
   };
 
-  const axis = (label, side) => ({
+  // On a logarithmic axis of many decades lines between these would be one grey band.
+  const decades = (plot, splits) => splits.at(-1) < 2e3 * splits[0] ? splits
+    : splits.map(v => Math.abs(Math.log10(v) % 1) < 1e-6 || Math.abs(Math.log10(v) % 1) > 1 - 1e-6 ? v : null);
+  const filtered = (log, lines) => log ? { ...lines, filter: decades } : lines;
+
+  const axis = (label, side, log) => ({
     label, font, labelFont: "600 " + font, labelSize: 26, labelGap: 2,
     // On the left the axis is as wide as its longest number.
     size: (plot, values) => side === "x" ? 34 :
       18 + 8 * Math.max(2, ...(values || []).map(v => v === null ? 0 : v.length)),
-    stroke: () => style("--ink"), grid: { stroke: () => style("--grid"), width: 1 },
-    ticks: { stroke: () => style("--tick"), width: 1 },
+    stroke: () => style("--ink"), grid: filtered(log, { stroke: () => style("--grid"), width: 1 }),
+    ticks: filtered(log, { stroke: () => style("--tick"), width: 1 }),
     values: (plot, values) => values.map(v => v === null ? "" : numberText(v, 8)),
   });
 
@@ -125,7 +130,7 @@
         x: { time: false, distr: figure.xLog ? 3 : 1, range: range(figure.xLog, (low, high) => [low, high]) },
         y: { distr: figure.yLog ? 3 : 1, range: range(figure.yLog, (low, high) => uPlot.rangeNum(low, high, 0.1, true)) },
       },
-      axes: [axis(figure.xLabel, "x"), axis(figure.yLabel, "y")],
+      axes: [axis(figure.xLabel, "x", figure.xLog), axis(figure.yLabel, "y", figure.yLog)],
       cursor: { points: { size: 7 }, drag: { x: true, y: true, uni: 30 } },
       legend: { live: true },
     }, data, place);

@@ -57,7 +57,8 @@ class Robot : public Command {
     OutputFolder folder(context, optimise ? optimiseFiles() : std::vector<std::string>{});
     Summary summary(context);
     Report report;
-    report.title = fmt::format("Information about the {}", robot_);
+    report.title = robot_ == "double-pendulum" ? "Information about the double pendulum"
+                                               : "Information about the suspended mass";
     ExitStatus status;
     if (convergence_) {
       status =

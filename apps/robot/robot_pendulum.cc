@@ -53,10 +53,9 @@ void tellPendulum(const MotionResult& found, const CommandContext& context, Summ
       Section{"Information",
               "What one experiment tells of the parameters: bounds from the Fisher information, "
               "and estimates from simulated experiments, beside the numbers of Wilson's thesis."});
-  Table table{
-      .title = "Variances and covariance of the estimates from one experiment",
-      .columns = {"", "m1 m1 [kg²]", "m1 c [kg·1e-3 kg m²/s]", "c c [(1e-3 kg m²/s)²]", "thesis"},
-      .rows = {}};
+  Table table{.title = "Variances and covariance of the estimates from one experiment",
+              .columns = {"", "m1 m1 [kg²]", "m1 c [kg·g m²/s]", "c c [(g m²/s)²]", "thesis"},
+              .rows = {}};
   addRow(table, "Cramér–Rao bound, start", boundBefore, "2.71e-4, 1.46e-3, 1.05");
   addRow(table, "Cramér–Rao bound, optimised", boundAfter, "2.32e-7, 8.83e-7, 1.01e-3");
   addRow(table, "Monte Carlo, start", slow.covariance, "3.16e-4, 3.45e-3, 1.06");
@@ -75,14 +74,14 @@ void tellPendulum(const MotionResult& found, const CommandContext& context, Summ
   sayHistograms(report);
   report.details.emplace_back(histogram("m1 [kg], start", slow, 0, truthBefore[0]));
   report.details.emplace_back(histogram("m1 [kg], optimised", fast, 0, truthAfter[0]));
-  report.details.emplace_back(histogram("c [1e-3 kg m²/s], start", slow, 1, truthBefore[1]));
-  report.details.emplace_back(histogram("c [1e-3 kg m²/s], optimised", fast, 1, truthAfter[1]));
+  report.details.emplace_back(histogram("c [g m²/s], start", slow, 1, truthBefore[1]));
+  report.details.emplace_back(histogram("c [g m²/s], optimised", fast, 1, truthAfter[1]));
   if (found.laboratory)
     tellLaboratory(*found.laboratory, laboratoryOfThesis(), context, summary, report);
   report.verdict = fmt::format(
       "The optimised motion gives {} times as much information about the least determined "
       "direction; the standard deviation of m1 falls from {} to {} kg, that of c from {} to {} "
-      "1e-3 kg m²/s.",
+      "g m²/s.",
       numberText(factor), numberText(std::sqrt(boundBefore(0, 0)), 3),
       numberText(std::sqrt(boundAfter(0, 0)), 3), numberText(std::sqrt(boundBefore(1, 1)), 3),
       numberText(std::sqrt(boundAfter(1, 1)), 3));

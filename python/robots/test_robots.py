@@ -239,7 +239,7 @@ class Motions(RobotsBesideProgram):
         stub.check(found, "RobotMotionResult")
         self.same_search(found, summary, out)
         self.same_trials(found, summary)
-        self.assertEqual((found.names, found.units), (["m1", "c"], ["kg", "1e-3 kg m²/s"]))
+        self.assertEqual((found.names, found.units), (["m1", "c"], ["kg", "g m²/s"]))
         self.same(found.robust.candidates, summary["candidates"])
         for mine, its in ((found.robust.initial, "initial"), (found.robust.nominal, "nominal"), (found.robust.robust, "robust")):
             self.same(mine, summary["lambda_min_candidates"][its])

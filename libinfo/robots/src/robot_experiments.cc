@@ -75,7 +75,7 @@ PlannedExperiment doublePendulumExperiment(const CartMotion& motion,
     return {predictorOf(CartDoublePendulum<DoublePendulumUnknowns::mass1AndDamping>{}, motion),
             covariance,
             {{.name = "m1", .unit = "kg", .start = 0.085, .lower = 1e-3},
-             {.name = "c", .unit = "1e-3 kg m²/s", .start = 0.5}},
+             {.name = "c", .unit = "g m²/s", .start = 0.5}},
             Eigen::Vector2d(0.085, 0.5)};
   CartDoublePendulum<DoublePendulumUnknowns::bothMasses> system;
   system.damping = damping;

@@ -8,7 +8,7 @@ namespace info {
 
 /// The identified parameters of the cart with the double pendulum.
 enum class DoublePendulumUnknowns {
-  mass1AndDamping,  ///< θ = (m1 [kg], c [1e-3 kg m²/s])
+  mass1AndDamping,  ///< θ = (m1 [kg], c [g m²/s])
   bothMasses,       ///< θ = (m1 [kg], m2 [kg]); c is the member `damping`
 };
 

@@ -26,7 +26,7 @@ LaboratoryEffects usualSuspendedMassEffects();
 
 /// Readings of the cart with the double pendulum, with the noise of (4.4) from RandomStream(seed,
 /// 0): absolute angles [rad], outputs × samples.
-/// @param truth (m1 [kg], c [1e-3 kg m²/s])
+/// @param truth (m1 [kg], c [g m²/s])
 /// @throws std::domain_error naming an effect out of its range
 Eigen::MatrixXd measureDoublePendulum(const CartMotion& motion, const Eigen::Vector2d& truth,
                                       const LaboratoryEffects& effects, std::uint64_t seed);

@@ -22,7 +22,7 @@ T dryFrictionShare(const T& rate, double slowRate) {
 ///     L = ½ Σ m_i (ẋ_i² + ḣ_i² + h_i² η̇²) + ½ I_i (α̇_i² + η̇² cos²α_i) + g cos η Σ m_i h_i
 /// with (x_i, h_i) the centres of mass in the plane, h downwards, I_i = m_i(L_i² + w_i²)/12 as of
 /// thin rods. Moments −c φ̇ − τ φ̇/√(φ̇² + ε²) in both joints, none about the third hinge. Output: the
-/// angles seen from the side, atan(tan α / cos η). θ = (m1 [kg], c [1e-3 kg m²/s]), u = ẍ [m/s²].
+/// angles seen from the side, atan(tan α / cos η). θ = (m1 [kg], c [g m²/s]), u = ẍ [m/s²].
 /// Defined while Σ m_i h_i² + I_i cos²α_i > 0. Dimensions as cart_double_pendulum.h.
 struct TiltingDoublePendulum {
   static constexpr int stateSize = 6, inputSize = 1, parameterSize = 2, outputSize = 2;

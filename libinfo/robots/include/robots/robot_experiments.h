@@ -44,7 +44,7 @@ CartMotion suspendedMassStart();
 CartMotion suspendedMassLively();
 
 /// Cart and double pendulum: absolute angles of both links with the variances of (4.4), RK4;
-/// θ = (m1 [kg], c [1e-3 kg m²/s]) at (0.085, 0.5) of (4.5), or θ = (m1, m2) [kg] with c held at
+/// θ = (m1 [kg], c [g m²/s]) at (0.085, 0.5) of (4.5), or θ = (m1, m2) [kg] with c held at
 /// `damping`.
 /// @param damping c [kg m²/s] ≥ 0, used if both masses are unknown
 PlannedExperiment doublePendulumExperiment(
