@@ -165,8 +165,15 @@ class ChainCompiler {
       for (std::size_t j = 0; j < size(); ++j) chain_.members[j] = members[permutation[j]];
       int found = 0;
       double length = 0;
-      for (const std::size_t i : deciding) {
-        const ChainPosture here = at(*postures_[i]);
+      // where the order makes no difference, that of the file stays, whatever the rounding
+      const auto isShorter = [&] {
+        return length < bestLength - sameLength * static_cast<double>(found);
+      };
+      for (std::size_t d = 0; d < deciding.size(); ++d) {
+        // no more of an order that can no longer be the best
+        const int atMost = found + static_cast<int>(deciding.size() - d);
+        if (atMost < bestFound || (atMost == bestFound && !isShorter())) break;
+        const ChainPosture here = at(*postures_[deciding[d]]);
         const PlacedChain placed = placeChain(path_, chain_, here.X_GC);
         ChainMemory memory;
         const ChainPath taut = solveChain(here.P, here.Q, placed.all(), memory);
@@ -174,9 +181,7 @@ class ChainCompiler {
         ++found;
         length += taut.length;
       }
-      // where the order makes no difference, that of the file stays, whatever the rounding
-      const double shorter = bestLength - sameLength * static_cast<double>(found);
-      if (found > bestFound || (found == bestFound && length < shorter)) {
+      if (found > bestFound || (found == bestFound && isShorter())) {
         bestFound = found;
         bestLength = length;
         best = chain_.members;
