@@ -51,7 +51,7 @@
   // While a slider moves, a simulation that takes long is replaced by a draft: vi with longer steps, so that the limb
   // follows the hand. What was asked for is simulated once the slider rests.
   const fluent = 80, rest = 250;      // [ms]
-  const steps = [...new Set([0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, data.step])].sort((a, b) => a - b);
+  const steps = [...new Set([0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, data.step])].sort((a, b) => a - b);
   let draftStep = steps.indexOf(0.02);
   let lastMilliseconds = 0;           // of a simulation that was no draft
   const draft = () => ({ ...request(), integrator: data.integrators.findIndex(i => i.name === "vi"), step: steps[draftStep], isDraft: true });

@@ -127,7 +127,7 @@ def follows_the_hand_with_drafts(browser, case):
         const again = await window.explore.set({});
         return {seen, drafted, rested: rested.coordinates.at(-1), again: again.coordinates.at(-1), shown,
                 value: rested.asked.values[1] === state.values[1], step: rested.asked.step};""")
-    assert all(isDraft and 0.0002 < step <= 0.05 and isTold for isDraft, step, isTold in told["seen"]), told
+    assert all(isDraft and 0.0002 < step <= 0.1 and isTold for isDraft, step, isTold in told["seen"]), told
     assert told["step"] == 0.0002 and told["value"] and "Draft" not in told["shown"], told
     assert told["again"] == told["rested"] and 0 < abs(told["drafted"] - told["rested"]) < 0.02, told
 

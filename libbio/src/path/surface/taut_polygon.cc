@@ -102,16 +102,17 @@ class SeveralObjects {
   int pushOut(Vector3d& p_G) const {
     int touched = -1;
     for (std::size_t k = 0; k < count_; ++k) {
-      const auto& [object, number, reach] = objects_[k];
-      if ((p_G - object->p_GS).squaredNorm() > reach * reach) continue;
-      const Vector3d p_S = object->intoFrame(p_G);
+      const Object& each = objects_[k];
+      const ChainObject& object = *each.object;
+      if ((p_G - object.p_GS).squaredNorm() > each.reach * each.reach) continue;
+      const Vector3d p_S = object.intoFrame(p_G);
       std::visit(
           [&](const auto& surface) {
             if (!(surface.value(p_S) < 0)) return;
-            p_G = object->outOfFrame(outOf(surface, p_S));
-            touched = number;
+            p_G = object.outOfFrame(outOf(surface, p_S));
+            touched = each.number;
           },
-          object->surface);
+          object.surface);
     }
     return touched;
   }
