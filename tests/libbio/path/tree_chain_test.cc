@@ -100,5 +100,16 @@ TEST(TreeChain, HasParameterGradientsOfTheCompiledPath) {
   }
 }
 
+// The string itself says which object it meets first.
+TEST(TreeChain, PassesObjectsInTheOrderOfTheShortestString) {
+  const Model model = system();
+  for (const auto& make : {extensor, flexor}) {
+    ArmPath<3> oneWay(model, make({"moved", "odd"})), otherWay(model, make({"odd", "moved"}));
+    for (const Q3& q : postures) {
+      EXPECT_NEAR(oneWay.at(q).length, otherWay.at(q).length, 1e-9) << q.transpose();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bio
