@@ -50,15 +50,15 @@
 
   // While a slider moves, a simulation that takes long is replaced by a draft: vi with longer steps, so that the limb
   // follows the hand. What was asked for is simulated once the slider rests.
-  const fluent = 80, rest = 250;      // [ms]
+  const drafts = { longer: 80, rest: 250 };  // than a simulation may take, after a slider has moved [ms]
   const steps = [...new Set([0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, data.step])].sort((a, b) => a - b);
   let draftStep = steps.indexOf(0.02);
-  let lastMilliseconds = 0;           // of a simulation that was no draft
+  let lastMilliseconds = 0;  // of a simulation that was no draft
   const draft = () => ({ ...request(), integrator: data.integrators.findIndex(i => i.name === "vi"), step: steps[draftStep], isDraft: true });
-  const mayBeDraft = () => lastMilliseconds > fluent && (state.integrator !== "vi" || state.step < steps[draftStep]);
+  const mayBeDraft = () => lastMilliseconds > drafts.longer && (state.integrator !== "vi" || state.step < steps[draftStep]);
   function tuneDrafts(milliseconds) {
-    if (milliseconds > fluent && draftStep < steps.length - 1) ++draftStep;
-    if (milliseconds < fluent / 3 && draftStep > 0) --draftStep;
+    if (milliseconds > drafts.longer && draftStep < steps.length - 1) ++draftStep;
+    if (milliseconds < drafts.longer / 3 && draftStep > 0) --draftStep;
   }
 
   // One simulation at a time; what changes meanwhile is simulated next.
@@ -87,7 +87,7 @@
       }
     }
     isRunning = false;
-    if (isDraft) resting = setTimeout(simulate, rest);
+    if (isDraft) resting = setTimeout(simulate, drafts.rest);
     else simulated.splice(0).forEach(resolve => resolve(state.result));
   }
   const afterDraft = () => state.result.asked.isDraft ? new Promise(resolve => { simulated.push(resolve); simulate(); }) : state.result;
@@ -266,7 +266,7 @@
 
   // For scripts and tests: sets values by name and waits for what is simulated with them.
   window.explore = {
-    state, view,
+    state, view, drafts,
     set(values) {
       for (const [name, value] of Object.entries(values))
         state.values[data.parameters.findIndex(p => p.name === name)] = value;
