@@ -63,8 +63,8 @@
   };
 
   // On a logarithmic axis of many decades lines between these would be one grey band.
-  const decades = (plot, splits) => splits.at(-1) < 2e3 * splits[0] ? splits
-    : splits.map(v => Math.abs(Math.log10(v) % 1) < 1e-6 || Math.abs(Math.log10(v) % 1) > 1 - 1e-6 ? v : null);
+  const isDecade = v => Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-6;
+  const decades = (plot, splits) => splits.at(-1) < 2e3 * splits[0] ? splits : splits.map(v => isDecade(v) ? v : null);
   const filtered = (log, lines) => log ? { ...lines, filter: decades } : lines;
 
   const axis = (label, side, log) => ({

@@ -52,13 +52,25 @@
   // follows the hand. What was asked for is simulated once the slider rests.
   const drafts = { longer: 80, rest: 250 };  // than a simulation may take, after a slider has moved [ms]
   const steps = [...new Set([0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, data.step])].sort((a, b) => a - b);
-  let draftStep = steps.indexOf(0.02);
-  let lastMilliseconds = 0;  // of a simulation that was no draft
-  const draft = () => ({ ...request(), integrator: data.integrators.findIndex(i => i.name === "vi"), step: steps[draftStep], isDraft: true });
-  const mayBeDraft = () => lastMilliseconds > drafts.longer && (state.integrator !== "vi" || state.step < steps[draftStep]);
+  let draftStep = steps.indexOf(0.02);  // which of the steps
+  let lastMilliseconds = 0;             // of a simulation that was no draft
+  const shortestDraft = () => state.integrator === "vi" ? steps.indexOf(state.step) + 1 : 0;
+  const isSlow = () => lastMilliseconds > drafts.longer && shortestDraft() < steps.length;
+  function draft() {
+    draftStep = Math.max(draftStep, shortestDraft());
+    return { ...request(), integrator: data.integrators.findIndex(i => i.name === "vi"), step: steps[draftStep], isDraft: true };
+  }
   function tuneDrafts(milliseconds) {
     if (milliseconds > drafts.longer && draftStep < steps.length - 1) ++draftStep;
-    if (milliseconds < drafts.longer / 3 && draftStep > 0) --draftStep;
+    if (milliseconds < drafts.longer / 3 && draftStep > shortestDraft()) --draftStep;
+  }
+
+  function take(result, asked) {
+    state.result = { ...result, asked };
+    if (asked.isDraft) tuneDrafts(result.milliseconds);
+    else lastMilliseconds = result.milliseconds;
+    trouble(result.why);
+    show();
   }
 
   // One simulation at a time; what changes meanwhile is simulated next.
@@ -70,27 +82,25 @@
     isMoving = moves;
     if (isRunning) return;
     isRunning = true;
-    let isDraft = false;
+    let asked;
     while (isWanted) {
       isWanted = false;
-      isDraft = isMoving && mayBeDraft();
-      const asked = isDraft ? draft() : request();
+      asked = isMoving && isSlow() ? draft() : request();
       try {
-        const result = await ask("run", asked);
-        state.result = { ...result, asked };
-        if (isDraft) tuneDrafts(result.milliseconds);
-        else lastMilliseconds = result.milliseconds;
-        trouble(result.why);
-        show();
+        take(await ask("run", asked), asked);
       } catch (error) {
         trouble(error.message);
       }
     }
     isRunning = false;
-    if (isDraft) resting = setTimeout(simulate, drafts.rest);
+    if (asked.isDraft) resting = setTimeout(simulate, drafts.rest);
     else simulated.splice(0).forEach(resolve => resolve(state.result));
   }
-  const afterDraft = () => state.result.asked.isDraft ? new Promise(resolve => { simulated.push(resolve); simulate(); }) : state.result;
+  // What is shown is not saved while it is a draft.
+  async function saveWhatWasAsked(save) {
+    if (state.result.asked.isDraft) await new Promise(resolve => { simulated.push(resolve); simulate(); });
+    if (!state.result.asked.isDraft) save();
+  }
 
   const view = new View($("view"));
   const curves = new Curves(data, colours);
@@ -223,9 +233,9 @@
     link.click();
   }
   const saveText = (name, text, type) => save(name, URL.createObjectURL(new Blob([text], { type })));
-  $("png").onclick = () => { view.render(); save("limb.png", $("view").toDataURL("image/png")); };
-  $("svg").onclick = async () => { await afterDraft(); saveText("motion.svg", curves.svg(), "image/svg+xml"); };
-  $("csv").onclick = async () => { await afterDraft(); saveText("motion.csv", curves.csv(state), "text/csv"); };
+  $("png").onclick = () => saveWhatWasAsked(() => { view.render(); save("limb.png", $("view").toDataURL("image/png")); });
+  $("svg").onclick = () => saveWhatWasAsked(() => saveText("motion.svg", curves.svg(), "image/svg+xml"));
+  $("csv").onclick = () => saveWhatWasAsked(() => saveText("motion.csv", curves.csv(state), "text/csv"));
   $("copy").onclick = () => navigator.clipboard.writeText($("command").textContent);
 
   // Begin --------------------------------------------------------------------------------------
@@ -248,14 +258,9 @@
     await ask("load", { wasm: await unpacked($("core").textContent), setups });
     await reference();
     setTimeRange();
-    if (state.model === 0) {
-      state.result = { ...state.reference, asked: request() };
-      lastMilliseconds = state.result.milliseconds;
-      trouble(state.result.why);
-      show();
-    } else {
-      await simulate();
-    }
+    // the first model's values are those given
+    if (state.model === 0) take(state.reference, request());
+    else await simulate();
     if (ellipse) ellipse.show(state.values);
     performance.mark("first picture");
     document.body.dataset.ready = "yes";

@@ -10,11 +10,12 @@ constexpr double near = 7e-6;
 constexpr double worthwhile = 1e-4;        ///< corrections above are always followed
 constexpr double largestTurn = 0.3;        ///< [rad] per iteration
 constexpr double largestFibreStep = 0.25;  ///< of ℓ0 per iteration
-/// A fibre's own correction, of ℓ0, above which its equation is solved first, in the first
-/// iteration and later, and the one at which that ends (decision 095).
-constexpr double boldAtFirst = 1e-4, bold = 1e-6, settled = 1e-6;
-/// Rates of a fibre for that; needed were at most 11 by MoBL-ARMS v3 in steps of 10 ms, and 18 by
-/// the shipped elbows, trials of curls and co-contraction in steps of 20 ms.
+/// A fibre's own correction, of ℓ0, above which its equation is solved first, until it is below the
+/// second; in the first iteration of a step and later (decision 095).
+constexpr double boldAtFirst = 1e-4, bold = 1e-6;
+/// Rates of a fibre for that. Needed were at most 10 in steps of 10 ms (MoBL-ARMS v3, two curls,
+/// also in steps of 50 ms; the shipped elbows, curls and co-contraction) and 17 of 20 ms (the
+/// elbows); of 50 ms an elbow takes all.
 constexpr int mostTries = 20;
 
 }  // namespace bio::stepping::newton

@@ -244,8 +244,7 @@ class VariationalStepper {
 
   /// evaluateFibre(); where the correction would be a bold one, the fibre's own equation is solved
   /// first, by Newton's method within a bracket (its residual rises with `end`): that takes a rate
-  /// of one muscle at a time, where the system's iteration takes every path. On a stiff tendon a
-  /// fibre that is hardly active needs up to eleven.
+  /// of one muscle at a time, where the system's iteration takes every path.
   void settleFibre(std::size_t i, double begin, double activation, double pathLength,
                    const Moving& step, double& end) {
     const double perFibre = system_.muscles()[i].muscle.perFibre();
@@ -262,7 +261,7 @@ class VariationalStepper {
       end += correction;
       if (!(low < end && end < high)) end = (low + high) / 2;
       correction = evaluateFibre(i, begin, activation, pathLength, step.h, end);
-      if (!isAbove(correction, newton::settled)) return;
+      if (!isAbove(correction, newton::bold)) return;
     }
   }
 

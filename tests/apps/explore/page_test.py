@@ -122,12 +122,24 @@ def follows_the_hand_with_drafts(browser, case):
         }
         const drafted = state.result.coordinates.at(-1);
         await until(() => !state.result.asked.isDraft);
-        const rested = state.result, shown = fit.textContent;
+        const rested = state.result, shown = fit.textContent, value = rested.asked.values[1] === state.values[1];
         const again = await window.explore.set({});
-        return {seen, drafted, rested: rested.coordinates.at(-1), again: again.coordinates.at(-1), shown,
-                value: rested.asked.values[1] === state.values[1], step: rested.asked.step};""")
+        // a file that is asked for while a draft is shown
+        const saved = [];
+        URL.createObjectURL = blob => { saved.push(blob); return ''; };
+        HTMLAnchorElement.prototype.click = () => {};
+        window.explore.drafts.rest = 1e6;
+        slider.value = state.values[1] * 1.001;
+        slider.dispatchEvent(new Event('input'));
+        await until(() => state.result.asked.isDraft);
+        document.getElementById('csv').click();
+        await until(() => saved.length > 0);
+        const lines = (await saved[0].text()).trim().split('\\n').length;
+        return {seen, drafted, lines, rows: rested.times.length, rested: rested.coordinates.at(-1),
+                again: again.coordinates.at(-1), shown, step: rested.asked.step, value};""")
     assert told["seen"] == [[True, step, True] for step in (0.02, 0.05, 0.1, 0.1, 0.1, 0.1)], told
     assert told["step"] == 0.01 and told["value"] and "Draft" not in told["shown"], told
+    assert told["lines"] == 1 + told["rows"], told  # what is saved is what was asked for
     assert told["again"] == told["rested"] and 0 < abs(told["drafted"] - told["rested"]) < 0.1, told
 
 

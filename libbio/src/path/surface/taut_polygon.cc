@@ -28,7 +28,8 @@ struct Polygon {
   }
 };
 
-Polygon through(const Vector3d& P, std::span<const Vector3d> hints, const Vector3d& Q) {
+Polygon throughHints(const Vector3d& P, const Vector3d& Q, std::span<const ChainObject> objects,
+                     const std::array<bool, maxChain>& inPlay) {
   Polygon polygon;
   Vector3d from = P;
   polygon.add(P, -1);
@@ -38,7 +39,9 @@ Polygon through(const Vector3d& P, std::span<const Vector3d> hints, const Vector
     }
     from = to;
   };
-  for (const Vector3d& hint : hints) lead(hint);
+  for (std::size_t j = 0; j < objects.size(); ++j) {
+    if (inPlay[j]) lead(objects[j].outOfFrame(objects[j].hint));
+  }
   lead(Q);
   return polygon;
 }
@@ -68,41 +71,21 @@ Vector3d outOf(const CylinderSurface& cylinder, const Vector3d& inside) {
   return {inside.x() * stretch, inside.y() * stretch, inside.z()};
 }
 
-// One object, in whose frame the polygon is.
-template <class S>
-class OneObject {
+// The objects in play.
+class Obstacles {
  public:
-  OneObject(const S& surface, int object)
-      : surface_(surface), object_(object), reach_(reachOf(Surface(surface))) {}
-
-  // Out of the object that a corner is in, if any: which one, or −1.
-  int pushOut(Vector3d& p) const {
-    if (p.squaredNorm() > reach_ * reach_ || !(surface_.value(p) < 0)) return -1;
-    p = outOf(surface_, p);
-    return object_;
-  }
-
- private:
-  S surface_;
-  int object_;
-  double reach_;
-};
-
-// Several objects; the polygon is in the frame in which they are placed.
-class SeveralObjects {
- public:
-  SeveralObjects(std::span<const ChainObject> objects, const std::array<bool, maxChain>& inPlay) {
+  Obstacles(std::span<const ChainObject> objects, const std::array<bool, maxChain>& inPlay) {
     for (std::size_t j = 0; j < objects.size(); ++j) {
-      if (inPlay[j]) {
-        objects_[count_++] = {&objects[j], static_cast<int>(j), reachOf(objects[j].surface)};
-      }
+      if (!inPlay[j]) continue;
+      obstacles_[count_++] = {&objects[j], static_cast<int>(j), reachOf(objects[j].surface)};
     }
   }
 
+  // Out of the object that a corner is in, if any: which one, or −1.
   int pushOut(Vector3d& p_G) const {
     int touched = -1;
     for (std::size_t k = 0; k < count_; ++k) {
-      const Object& each = objects_[k];
+      const Obstacle& each = obstacles_[k];
       const ChainObject& object = *each.object;
       if ((p_G - object.p_GS).squaredNorm() > each.reach * each.reach) continue;
       const Vector3d p_S = object.intoFrame(p_G);
@@ -118,17 +101,16 @@ class SeveralObjects {
   }
 
  private:
-  struct Object {
+  struct Obstacle {
     const ChainObject* object;
     int number;
     double reach;
   };
-  std::array<Object, maxChain> objects_;
+  std::array<Obstacle, maxChain> obstacles_;
   std::size_t count_ = 0;
 };
 
 // Moves all corners, until none moves by more than `near` or for so many rounds.
-template <class Obstacles>
 void relax(const Obstacles& obstacles, int rounds, double near, Polygon& polygon) {
   const auto last = static_cast<std::size_t>(polygon.numCorners - 1);
   // a corner's place between its neighbours that its sides aim at
@@ -172,62 +154,35 @@ Polygon refined(const Polygon& coarse) {
   return fine;
 }
 
-template <class Obstacles>
-void tauten(const Obstacles& obstacles, int rounds, Polygon& polygon) {
-  const Vector3d& end = polygon.corner[static_cast<std::size_t>(polygon.numCorners - 1)];
-  const double near = roughness / rounds * (end - polygon.corner[0]).norm();
-  relax(obstacles, rounds, near, polygon);
-  polygon = refined(polygon);
-  relax(obstacles, rounds, near, polygon);
-}
-
-// How a polygon in some frame F passes an object.
-ContactMemory contactWith(int object, const Polygon& polygon, const Eigen::Matrix3d& R_FS,
-                          const Vector3d& p_FS) {
-  ContactMemory contact;
-  std::size_t previous = 0;
-  for (std::size_t i = 1; i + 1 < static_cast<std::size_t>(polygon.numCorners); ++i) {
-    if (polygon.touched[i] != object) continue;
-    if (contact.passing == Passing::clear) {
-      contact.passing = Passing::touching;
-      contact.p_SA = R_FS.transpose() * (polygon.corner[i] - p_FS);
-      contact.u_SA =
-          R_FS.transpose() * (polygon.corner[i + 1] - polygon.corner[i - 1]).normalized();
-    } else {
-      contact.arc += (polygon.corner[i] - polygon.corner[previous]).norm();
-    }
-    previous = i;
-  }
-  return contact;
-}
-
 }  // namespace
 
 std::array<ContactMemory, maxChain> tautPolygon(const Vector3d& P, const Vector3d& Q,
                                                 std::span<const ChainObject> objects,
                                                 const std::array<bool, maxChain>& inPlay,
                                                 int rounds) {
+  const Obstacles obstacles(objects, inPlay);
+  Polygon polygon = throughHints(P, Q, objects, inPlay);
+  const double near = roughness / rounds * (Q - P).norm();
+  relax(obstacles, rounds, near, polygon);
+  polygon = refined(polygon);
+  relax(obstacles, rounds, near, polygon);
+  const auto last = static_cast<std::size_t>(polygon.numCorners - 1);
   std::array<ContactMemory, maxChain> contacts;
-  std::array<Vector3d, maxChain> hints;
-  std::size_t count = 0, only = 0;
   for (std::size_t j = 0; j < objects.size(); ++j) {
-    if (!inPlay[j]) continue;
-    hints[count++] = objects[j].outOfFrame(objects[j].hint);
-    only = j;
-  }
-  if (count == 1) {
-    const ChainObject& object = objects[only];
-    Polygon polygon = through(object.intoFrame(P), std::span(&object.hint, 1), object.intoFrame(Q));
-    const int number = static_cast<int>(only);
-    std::visit([&](const auto& surface) { tauten(OneObject(surface, number), rounds, polygon); },
-               object.surface);
-    contacts[only] = contactWith(number, polygon, Eigen::Matrix3d::Identity(), Vector3d::Zero());
-    return contacts;
-  }
-  Polygon polygon = through(P, std::span(hints.data(), count), Q);
-  tauten(SeveralObjects(objects, inPlay), rounds, polygon);
-  for (std::size_t j = 0; j < objects.size(); ++j) {
-    contacts[j] = contactWith(static_cast<int>(j), polygon, objects[j].R_GS, objects[j].p_GS);
+    ContactMemory& contact = contacts[j];
+    std::size_t previous = 0;
+    for (std::size_t i = 1; i < last; ++i) {
+      if (polygon.touched[i] != static_cast<int>(j)) continue;
+      if (contact.passing == Passing::clear) {
+        contact.passing = Passing::touching;
+        contact.p_SA = objects[j].intoFrame(polygon.corner[i]);
+        contact.u_SA = objects[j].R_GS.transpose() *
+                       (polygon.corner[i + 1] - polygon.corner[i - 1]).normalized();
+      } else {
+        contact.arc += (polygon.corner[i] - polygon.corner[previous]).norm();
+      }
+      previous = i;
+    }
   }
   return contacts;
 }

@@ -121,7 +121,7 @@ inline void StepSolver::addMuscles(LaneStep<Here>& step, const Mask& running, co
     const Real within = choose((low < next) & (next < high), next, (low + high) / 2);
     end = choose(unsettled, within, end);
     correction = evaluateFibre(i, pathLength, step, moving, rate);
-    unsettled &= absolute(correction) * system_.muscles[i].perFibre > newton::settled;
+    unsettled &= absolute(correction) * system_.muscles[i].perFibre > newton::bold;
   }
 }
 
