@@ -47,9 +47,9 @@ std::string explorePage(const std::string& title, const std::string& verdict,
   const std::string scripts = fmt::format("{}\n{}\n{}\n{}\n{}", assets::sceneJs, assets::playerJs,
                                           assets::curvesJs, assets::parametersJs, assets::pageJs);
   const std::string policy = fmt::format(
-      "default-src 'none'; script-src {} {} 'wasm-unsafe-eval' blob:; worker-src blob:; "
+      "default-src 'none'; script-src {} {} {} 'wasm-unsafe-eval' blob:; worker-src blob:; "
       "style-src 'unsafe-inline'; img-src data: blob:",
-      hashSource(libraries), hashSource(scripts));
+      hashSource(std::string(assets::engineJs)), hashSource(libraries), hashSource(scripts));
   return filled(assets::pageHtml,
                 {{"policy", policy},
                  {"title", htmlText(title)},
@@ -60,6 +60,7 @@ std::string explorePage(const std::string& title, const std::string& verdict,
                  {"data", scriptText(data)},
                  {"core", std::string(assets::liveCore)},
                  {"worker", fmt::format("{}\n{}", assets::coreJs, assets::workerJs)},
+                 {"engine", std::string(assets::engineJs)},
                  {"libraries", libraries},
                  {"scripts", scripts}});
 }

@@ -3,37 +3,16 @@
 
 (async () => {
   const $ = id => document.getElementById(id);
-  const data = JSON.parse($("data").textContent);
+  const { data, ask } = engine;
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const colours = () => dark.matches
     ? ["#56b4e9", "#e69f00", "#00c08b", "#f0e442", "#d98cbf", "#ff7f50", "#a0a0ff", "#9acd32"]
     : ["#0072b2", "#d55e00", "#009e73", "#b8860b", "#aa4499", "#332288", "#882255", "#117733"];
 
-  // The worker ---------------------------------------------------------------------------------
-
   const trouble = message => {
     $("trouble").textContent = message;
     $("trouble").hidden = !message;
   };
-  async function unpacked(base64) {
-    const packed = Uint8Array.from(atob(base64), c => c.charCodeAt(0));
-    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-    return new Uint8Array(await new Response(stream).arrayBuffer());
-  }
-  const script = URL.createObjectURL(new Blob([$("worker").textContent], { type: "text/javascript" }));
-  const worker = new Worker(script);
-  const waiting = new Map();
-  let lastId = 0;
-  worker.onmessage = ({ data: { id, answer, failure } }) => {
-    const { resolve, reject } = waiting.get(id);
-    waiting.delete(id);
-    if (failure === undefined) resolve(answer);
-    else reject(new Error(failure));
-  };
-  const ask = (what, more) => new Promise((resolve, reject) => {
-    waiting.set(++lastId, { resolve, reject });
-    worker.postMessage({ id: lastId, what, ...more });
-  });
 
   // State --------------------------------------------------------------------------------------
 
@@ -253,10 +232,8 @@
   sliders.enable(data.models[state.model].parameters);
   showCommand();
   $("fit").textContent = "Compiling the model …";
-  const setups = data.models.map(model => ({ ...model.setup, files: { ...data.files } }));
   try {
-    await ask("load", { wasm: await unpacked($("core").textContent), setups });
-    await reference();
+    state.reference = await engine.reference;
     setTimeRange();
     // the first model's values are those given
     if (state.model === 0) take(state.reference, request());

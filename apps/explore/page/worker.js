@@ -3,15 +3,22 @@
 
 let cores = [];
 
-async function load({ wasm, setups }) {
-  const started = performance.now();
+async function unpacked(base64) {
+  const text = atob(base64), packed = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) packed[i] = text.charCodeAt(i);
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/// @param core  the .wasm, packed by gzip, in base 64
+async function load({ core, setups }) {
+  const wasm = await unpacked(core);
   cores = [];
   for (const setup of setups) {
-    const core = await Core.from(wasm);
-    core.load(setup);
-    cores.push(core);
+    const loaded = await Core.from(wasm);
+    loaded.load(setup);
+    cores.push(loaded);
   }
-  return { milliseconds: performance.now() - started };
 }
 
 function run({ model, trial, values, integrator, step, time }) {
