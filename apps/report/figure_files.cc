@@ -92,17 +92,17 @@ class FigureWriter {
     shown_ += fmt::format(
         "\\begin{{table}}[p]\n  \\centering\n  \\caption{{{}}}\n  \\label{{tab:{}}}\n  "
         "\\input{{{}.tex}}\n\\end{{table}}\n\n",
-        latexText(title), name, name);
+        latexProse(title), name, name);
   }
 
   /// methods.tex, a section of a paper.
   void addMethods(const Methods& methods) {
     if (methods.isEmpty()) return;
-    std::string text = latexText(methods.paragraph()) + "\n";
+    std::string text = latexProse(methods.paragraph()) + "\n";
     const auto list = [&](const char* head, const std::vector<std::string>& items) {
       if (items.empty()) return;
       text += fmt::format("\n{}\n\\begin{{itemize}}\n", head);
-      for (const std::string& item : items) text += "  \\item " + latexText(item) + "\n";
+      for (const std::string& item : items) text += "  \\item " + latexProse(item) + "\n";
       text += "\\end{itemize}\n";
     };
     list("Assumptions:", methods.assumptions());
@@ -113,7 +113,7 @@ class FigureWriter {
   void writeContents(const std::string& title) {
     const std::string head = fmt::format(
         "% Figures and tables of: {}\n% The preamble needs "
-        "\\usepackage{{graphicx,booktabs,tabularx}}\n",
+        "\\usepackage{{graphicx,booktabs,array}}\n",
         oneComment(title));
     std::string list;
     for (const std::string& name : written_) list += "% file: " + name + "\n";
@@ -147,7 +147,7 @@ class FigureWriter {
         "\\begin{{figure}}[p]\n  \\centering\n  "
         "\\includegraphics[width=\\linewidth]{{{}}}\n  \\caption{{{}.{}{}}}\n  "
         "\\label{{fig:{}}}\n\\end{{figure}}\n\n",
-        file, latexText(title), caption.empty() ? "" : " ", latexText(caption), name);
+        file, latexProse(title), caption.empty() ? "" : " ", latexProse(caption), name);
   }
 
   OutputFolder& folder_;

@@ -147,61 +147,69 @@ std::size_t lengthOf(std::string_view text) {
 
 /// A column of a LaTeX table; lengths in characters.
 struct LatexColumn {
-  bool numbers = false;    ///< set to the right
-  bool wraps = false;      ///< takes a share of the line's width, and breaks its texts
-  bool twoLines = false;   ///< the head alone is broken
-  std::size_t head = 0;    ///< of the head
-  std::size_t widest = 0;  ///< of the longest cell
+  bool numbers = false;           ///< set to the right
+  std::size_t wrapped = 0;        ///< width at which its texts are broken; 0: they are not
+  std::vector<std::string> head;  ///< lines
+  std::size_t widest = 0;         ///< of the longest cell
 
   std::size_t width() const {
-    constexpr std::size_t leastWrapped = 14;
-    if (wraps) return leastWrapped;
-    return std::max(twoLines ? (head + 1) / 2 : head, widest);
+    if (wrapped > 0) return wrapped;
+    std::size_t most = widest;
+    for (const std::string& text : head) most = std::max(most, lengthOf(text));
+    return most;
   }
 };
 
-/// Where a head is broken into two lines: the space nearest to its middle.
-std::size_t breakOf(const std::string& head) {
-  std::size_t best = head.npos;
-  const auto distance = [&](std::size_t at) {
-    return std::max(2 * at, head.size()) - std::min(2 * at, head.size());
-  };
-  for (std::size_t at = head.find(' '); at != head.npos; at = head.find(' ', at + 1))
-    if (best == head.npos || distance(at) < distance(best)) best = at;
-  return best;
+/// Lines of at most so many characters if its words allow that; names are broken behind dots and
+/// underscores.
+std::vector<std::string> brokenHead(const std::string& head, std::size_t most) {
+  std::vector<std::string> lines(1);
+  const std::regex piece("[^ ._]*[ ._]*");
+  for (std::sregex_iterator at(head.begin(), head.end(), piece), end; at != end; ++at) {
+    const std::string next = at->str(), word = next.substr(0, next.find_last_not_of(' ') + 1);
+    if (!lines.back().empty() && lengthOf(lines.back()) + lengthOf(word) > most)
+      lines.emplace_back();
+    lines.back() += next;
+  }
+  for (std::string& text : lines) text.erase(text.find_last_not_of(' ') + 1);
+  return lines;
 }
 
-/// Makes a table narrower that is too wide for a page: heads of two lines, then the longest texts
-/// as columns that wrap.
-void narrow(const Table& table, std::vector<LatexColumn>& columns) {
-  constexpr std::size_t line = 78, shortest = 14, between = 2;
-  const auto isTooWide = [&] {
-    std::size_t sum = 0;
-    for (const LatexColumn& column : columns) sum += column.width() + between;
-    return sum > line + between;
-  };
-  if (isTooWide()) {
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      columns[i].twoLines =
-          columns[i].head > columns[i].widest && breakOf(table.columns[i]) != std::string::npos;
+std::size_t widthOf(const std::vector<LatexColumn>& columns) {
+  std::size_t sum = 0;
+  for (const LatexColumn& column : columns) sum += column.width() + 2;
+  return sum;
+}
+
+constexpr std::size_t line = 72;  ///< characters of a page's line
+
+/// Makes a table narrower that is too wide for a page: first heads are broken; then, where it would
+/// have to be set smaller than 7 of 10 points, the longest texts are.
+void narrow(std::vector<LatexColumn>& columns) {
+  constexpr std::size_t widest = line * 10 / 7, shortHead = 12, mostLines = 3, wrapped = 36;
+  if (widthOf(columns) <= line) return;
+  for (LatexColumn& column : columns) {
+    const std::string head = column.head.front();
+    for (std::size_t most = std::max(column.widest, shortHead); lengthOf(head) > most; ++most) {
+      column.head = brokenHead(head, most);
+      if (column.head.size() <= mostLines) break;
     }
   }
-  while (isTooWide()) {
+  while (widthOf(columns) > widest) {
     LatexColumn* longest = nullptr;
     for (LatexColumn& column : columns) {
-      if (column.numbers || column.wraps || column.widest <= shortest) continue;
+      if (column.numbers || column.wrapped > 0 || column.widest <= wrapped) continue;
       if (longest == nullptr || column.widest > longest->widest) longest = &column;
     }
     if (longest == nullptr) return;
-    longest->wraps = true;
-    longest->twoLines = false;
+    longest->wrapped = wrapped;
   }
 }
 
 std::vector<LatexColumn> latexColumns(const Table& table) {
   std::vector<LatexColumn> columns;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    LatexColumn column{.numbers = !table.rows.empty(), .head = lengthOf(table.columns[i])};
+    LatexColumn column{.numbers = !table.rows.empty(), .head = {table.columns[i]}};
     for (const auto& row : table.rows) {
       const std::string& cell = row.at(i);
       column.widest = std::max(column.widest, lengthOf(cell));
@@ -209,7 +217,7 @@ std::vector<LatexColumn> latexColumns(const Table& table) {
     }
     columns.push_back(column);
   }
-  narrow(table, columns);
+  narrow(columns);
   return columns;
 }
 
@@ -227,12 +235,12 @@ std::string beginningOfLine(const std::string& latex) {
   return latex.starts_with('[') || latex.starts_with('*') ? "{}" + latex : latex;
 }
 
-std::string latexHead(const std::string& head, const LatexColumn& column) {
-  if (!column.twoLines) return latexText(head);
-  const std::size_t at = breakOf(head);
-  return fmt::format("\\shortstack[{}]{{{}\\\\{}}}", column.numbers ? 'r' : 'l',
-                     latexText(head.substr(0, at)),
-                     beginningOfLine(latexText(head.substr(at + 1))));
+std::string latexHead(const LatexColumn& column) {
+  if (column.head.size() == 1) return latexText(column.head.front());
+  std::string lines = latexText(column.head.front());
+  for (std::size_t i = 1; i < column.head.size(); ++i)
+    lines += "\\\\" + beginningOfLine(latexText(column.head[i]));
+  return fmt::format("\\shortstack[{}]{{{}}}", column.numbers ? 'r' : 'l', lines);
 }
 
 /// Cells that are LaTeX as a row.
@@ -277,30 +285,34 @@ std::string latexText(std::string_view text) {
   return latex;
 }
 
+std::string latexProse(std::string_view text) {
+  return breakable(latexText(text));
+}
+
 std::string latexTable(const Table& table) {
   const std::vector<LatexColumn> columns = latexColumns(table);
-  const bool wraps = std::any_of(columns.begin(), columns.end(),
-                                 [](const LatexColumn& column) { return column.wraps; });
   std::string alignment;
   std::vector<std::string> heads;
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    alignment += columns[i].wraps     ? ">{\\raggedright\\arraybackslash}X"
-                 : columns[i].numbers ? "r"
-                                      : "l";
-    heads.push_back(latexHead(table.columns[i], columns[i]));
+  for (const LatexColumn& column : columns) {
+    alignment += column.wrapped > 0 ? fmt::format(">{{\\raggedright\\arraybackslash}}p{{{}em}}",
+                                                  column.wrapped / 2)
+                 : column.numbers   ? "r"
+                                    : "l";
+    heads.push_back(latexHead(column));
   }
-  const std::string environment = wraps ? "tabularx" : "tabular";
-  std::string text =
-      fmt::format("% needs \\usepackage{{booktabs{}}}\n\\begin{{{}}}{}{{{}}}\n",
-                  wraps ? ",tabularx" : "", environment, wraps ? "{\\linewidth}" : "", alignment);
+  std::string text = fmt::format(
+      "% needs \\usepackage{{graphicx,booktabs,array}}\n"
+      "\\resizebox{{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}}{{!}}{{%\n"
+      "\\begin{{tabular}}{{{}}}\n",
+      alignment);
   text += "\\toprule\n" + latexRow(heads) + "\\midrule\n";
   for (const auto& row : table.rows) {
     std::vector<std::string> cells;
     for (std::size_t i = 0; i < columns.size(); ++i)
-      cells.push_back(columns[i].wraps ? breakable(latexCell(row[i])) : latexCell(row[i]));
+      cells.push_back(columns[i].wrapped > 0 ? breakable(latexCell(row[i])) : latexCell(row[i]));
     text += latexRow(cells);
   }
-  return text + fmt::format("\\bottomrule\n\\end{{{}}}\n", environment);
+  return text + "\\bottomrule\n\\end{tabular}}\n";
 }
 
 }  // namespace app

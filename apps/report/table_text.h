@@ -14,9 +14,12 @@ std::string csvText(const Table& table);
 /// commands, so that pdfLaTeX knows them. Characters that it may not know stand as they are.
 std::string latexText(std::string_view text);
 
+/// latexText() that may be broken behind slashes and underscores, as of paths and names.
+std::string latexProse(std::string_view text);
+
 /// A table as a tabular environment with rules of the package booktabs, columns of numbers to the
-/// right. One that is too wide for a page has heads of two lines and, if that is not enough, is a
-/// tabularx of the line's width whose longest texts wrap, set ragged right.
+/// right. One that is wider than a line is set smaller (graphicx), its heads in several lines;
+/// texts of one that would be too small wrap, ragged right (array).
 std::string latexTable(const Table& table);
 
 }  // namespace app
