@@ -1,8 +1,11 @@
 // What all sensitivities of the main job cost, beside the job itself.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+
 #include "bio/observation/least_squares_cost.h"
 #include "bio/sensitivity/cost_gradient.h"
+#include "kept_memory.h"
 #include "support/shipped_elbow.h"
 
 namespace {
@@ -70,6 +73,31 @@ void gradient(benchmark::State& state, const std::vector<std::string>& patterns)
 }
 BENCHMARK_CAPTURE(gradient, of_a_cost_in_all, {"all"})->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(gradient, of_a_cost_in_one, {"TRI.radius"})->Unit(benchmark::kMillisecond);
+
+/// What central differences of the motion take: two simulations of a changed model for each
+/// parameter that matches.
+void centralDifferences(benchmark::State& state, const std::vector<std::string>& patterns) {
+  const ShippedElbow elbow;
+  const auto wanted = elbow.catalogue.select(patterns);
+  for (auto _ : state) {
+    for (const std::size_t index : wanted) {
+      const bio::ModelParameter& parameter = elbow.catalogue.parameters()[index];
+      for (const double share : {-1e-4, 1e-4}) {
+        const double value =
+            std::clamp(parameter.value + share * parameter.sd, parameter.lower, parameter.upper);
+        const auto setting = elbow.catalogue.at({index}, Eigen::VectorXd::Constant(1, value));
+        const bio::MusculoskeletalSystem system(setting.model, ShippedElbow::options());
+        const bio::Trajectory motion =
+            bio::simulateSetting(system, setting, elbow.excitation, options());
+        benchmark::DoNotOptimize(motion.q.data());
+      }
+    }
+  }
+  state.counters["parameters"] = static_cast<double>(wanted.size());
+}
+BENCHMARK_CAPTURE(centralDifferences, of_the_motion_to_all, {"all"})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(centralDifferences, of_the_motion_to_one, {"TRI.radius"})
+    ->Unit(benchmark::kMillisecond);
 
 void compileArm(benchmark::State& state) {
   const ShippedElbow elbow;

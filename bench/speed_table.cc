@@ -11,6 +11,7 @@
 #include <string>
 
 #include "hot_jobs.h"
+#include "kept_memory.h"
 
 namespace {
 

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <map>
+#include <utility>
 
 #include "bio/analysis/opensim_paths.h"
 #include "bio/discovery/user_effect.h"
 #include "bio/model/convert_muscles.h"
+#include "bio/model/units.h"
 #include "bio/opensim/osim_file.h"
 #include "bio/path/length_jumps.h"
 #include "bio/review/model_review.h"
@@ -124,13 +127,40 @@ void tellTranslation(const CheckedFile& file, const bio::Model& model, Contents&
   }
 }
 
+/// A line each; many of one muscle along one coordinate are a line with the largest.
+void tellJumps(const std::string& file, const std::vector<bio::LengthJump>& jumps,
+               Findings& findings) {
+  constexpr std::ptrdiff_t many = 3;
+  for (auto begin = jumps.begin(); begin != jumps.end();) {
+    const auto end = std::find_if(begin, jumps.end(), [&](const bio::LengthJump& jump) {
+      return jump.muscle != begin->muscle || jump.coordinate != begin->coordinate;
+    });
+    const auto add = [&](const std::string& text) {
+      findings.add(file, "unusual", fmt::format("muscle '{}': {}", begin->muscle, text));
+    };
+    if (end - begin < many) {
+      std::for_each(begin, end, [&](const bio::LengthJump& jump) { add(describe(jump)); });
+    } else {
+      const auto largest = std::max_element(begin, end, [](const auto& a, const auto& b) {
+        return std::pair(std::abs(a.size), std::abs(a.arm)) <
+               std::pair(std::abs(b.size), std::abs(b.arm));
+      });
+      const double unit = begin->turns ? bio::degreesPerRadian : 1;
+      add(fmt::format(
+          "its length or moment arm jumps {} times along {}, at {:.4g} to {:.4g} {}; "
+          "most: {}",
+          end - begin, begin->coordinate, unit * begin->value, unit * std::prev(end)->value,
+          begin->turns ? "deg" : "m", describe(*largest)));
+    }
+    begin = end;
+  }
+}
+
 Contents checkModel(const std::string& file, const bio::Model& model, Findings& findings) {
   for (const std::string& warning : model.warnings) findings.add(file, "warning", warning);
   for (const std::string& remark : model.remarks) findings.add(file, "unusual", remark);
   for (const bio::Remark& remark : bio::reviewModel(model)) findings.add(file, remark);
-  for (const bio::LengthJump& jump : bio::lengthJumps(model)) {
-    findings.add(file, "unusual", fmt::format("muscle '{}': {}", jump.muscle, describe(jump)));
-  }
+  tellJumps(file, bio::lengthJumps(model), findings);
   for (const bio::OpenSimDifference& difference : bio::openSimDifferences(model)) {
     findings.add(file, "unusual",
                  fmt::format("muscle '{}': {}", difference.muscle, describe(difference)));

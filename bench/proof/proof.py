@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The table of proof: time to a stated error, FisherHill's integrators beside OpenSim's, one thread.
 
-    bench/proof/proof.py PROGRAM [--beside PROGRAM] [--rounds N] [--shared DIR] [--out DIR]
+    bench/proof/proof.py PROGRAM [--beside PROGRAM] [--rounds N] [--shared DIR] [--out DIR] [--bench sensitivity_bench] [--ranks]
+        [--mujoco MYO_SIM]
 
 PROGRAM is `build/program/apps/fisherhill`. Every motion is simulated by `fisherhill compare`, which measures error and
 time of each integrator and step against a converged reference; a time is the median of the rounds; one between two steps of `vi`
@@ -9,7 +10,8 @@ or `rk4` lies on the line between them, of `vi-adaptive` the longest of the step
 larger error. `--beside` measures
 another build of the program in alternation with it. OpenSim's times are those of opensim.csv: OpenSim 4.6, measured on
 2026-11-27 on a machine of this class, beside FisherHill's commit 501a1df, which is what to build for `--beside`. Written are proof.csv (all runs),
-proof.md (the table) and, with matplotlib, proof.svg. Motions of models that lie in `--shared` (default ../shared) are
+proof.md (the tables) and, with matplotlib, proof.svg. `--bench` adds derivatives beside differences (built with FISHERHILL_BENCH), `--ranks` ensembles over
+MPI ranks, `--mujoco` MuJoCo's times for arm26's elbow as MyoSim has converted it (github.com/MyoHub/myo_sim; Debian package libmujoco-dev). Motions of models that lie in `--shared` (default ../shared) are
 left out where it is missing.
 """
 
@@ -23,6 +25,8 @@ import statistics
 import subprocess
 import sys
 import tempfile
+
+from further import derivatives, mujoco_runs, scaling
 
 here = pathlib.Path(__file__).resolve().parent
 top = here.parents[1]
@@ -153,6 +157,21 @@ def beside_table(results):
     return text
 
 
+def mujoco_table(results, myo_sim):
+    """arm26's elbow: times to errors from each program's own converged motion."""
+    motion, own, _ = next(result for result in results if result[0].name == "arm26_elbow")
+    runs, head = mujoco_runs(myo_sim, motion)
+    errors = [0.05, 0.01, 0.005]
+    text = (f"\n{motion.words}, beside {head.split(',')[0]} and MyoSim's conversion of the model, whose tendons are rigid and whose joint has an armature of 0.01 kg m² and a damping of 0.5 N m s: "
+            "errors from each program's own converged motion.\n\n"
+            f"| integrator | {' | '.join(f'to {error:g}° [ms]' for error in errors)} |\n|---|{'---|' * len(errors)}\n")
+    for words, of, names in (("FisherHill", own, ("vi", "vi-adaptive")), ("MuJoCo", runs, ("Euler", "implicit", "RK4"))):
+        for name in names:
+            find = by_longest_step if name == "vi-adaptive" else to_error
+            text += f"| {words} {name} | {' | '.join(cell(find(of, name, error)) for error in errors)} |\n"
+    return text
+
+
 def plot(results, opensim, path):
     try:
         import matplotlib
@@ -193,6 +212,9 @@ def main():
     parser.add_argument("--shared", type=pathlib.Path, default=top / "../shared")
     parser.add_argument("--only", help="name of one motion")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/proof"))
+    parser.add_argument("--bench", type=pathlib.Path, help="the program sensitivity_bench")
+    parser.add_argument("--ranks", action="store_true", help="ensembles over MPI ranks")
+    parser.add_argument("--mujoco", type=pathlib.Path, help="folder of MyoSim")
     words = parser.parse_args()
     with open(here / "opensim.csv", encoding="utf-8") as file:
         opensim = list(csv.DictReader(file))
@@ -222,6 +244,12 @@ def main():
     load = os.getloadavg()[0]
     head = f"{datetime.date.today()}, {os.cpu_count()} cores, load {load:.2f}, medians of {words.rounds} rounds, one thread.\n\n"
     text = head + table(results, opensim) + beside_table(results)
+    if words.mujoco:
+        text += mujoco_table(results, words.mujoco.resolve())
+    if words.bench:
+        text += derivatives(words.bench.resolve())
+    if words.ranks:
+        text += scaling(pathlib.Path(words.program).resolve())
     (words.out / "proof.md").write_text(text, encoding="utf-8")
     print(text)
     if not plot(results, opensim, words.out / "proof.svg"):

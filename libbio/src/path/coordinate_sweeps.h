@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <numbers>
 #include <set>
 #include <stdexcept>
@@ -11,9 +12,9 @@
 namespace bio {
 
 /// Calls work(skeleton, from, to) for every coordinate that is neither locked nor coupled, free
-/// alone, with its range and a margin of `beyond` of it on either side. A range of more than 2π rad
-/// or 2 m is reduced to that width about the default, without margin. Coordinates over which
-/// nothing can be simulated are skipped.
+/// alone, with its range and a margin of `beyond` of it on either side, at most 2π rad or 2 m in
+/// all. A range of more is reduced to that width about the default, without margin. Coordinates
+/// over which nothing can be simulated are skipped.
 template <class Work>
 void sweepCoordinates(const Model& model, double beyond, const Work& work) {
   std::set<std::string> dependent;
@@ -25,7 +26,8 @@ void sweepCoordinates(const Model& model, double beyond, const Work& work) {
       const bool isOpen = !(c.rangeMax - c.rangeMin <= 2 * wide);
       const double lower = isOpen ? c.defaultValue - wide : c.rangeMin;
       const double upper = isOpen ? c.defaultValue + wide : c.rangeMax;
-      const double more = isOpen ? 0 : beyond * (upper - lower);
+      const double more =
+          isOpen ? 0 : std::min(beyond * (upper - lower), wide - (upper - lower) / 2);
       if (!(upper > lower)) continue;
       try {
         const Skeleton skeleton(model, {.freeCoordinates = {c.name}, .lockedValues = {}});

@@ -275,4 +275,21 @@ TEST(FisherHill, EverySubcommandHasHelpWithAnExample) {
   EXPECT_GT(subcommands, 0);
 }
 
+TEST(CheckCommand, TellsManyJumpsOfAMuscleInOneLine) {
+  const ScratchFolder scratch;
+  std::string text = support::contentOf(std::string(FISHERHILL_SOURCE_DIR) + "/models/elbow8.osim");
+  const std::string old = "<range>0 0.813149</range>";
+  std::size_t at = 0;
+  for (const std::string range : {"<range>0.2 0.8</range>", "<range>0.4 1</range>"}) {
+    at = text.find(old, at);
+    ASSERT_NE(at, text.npos);
+    text.replace(at, old.size(), range);
+  }
+  const ProgramResult result = runFisherHill({"check", scratch.file("jumps.osim", text)});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("muscle 'BRA': its length or moment arm jumps 3 times along "
+                                    "elbow_flexion, at 11.46 to 57.3 deg; most: the length of BRA "
+                                    "jumps by 2.78 mm at elbow_flexion = 11.46 deg"));
+}
+
 }  // namespace

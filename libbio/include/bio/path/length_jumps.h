@@ -31,8 +31,8 @@ std::vector<LengthJump> lengthJumps(const Model& model, const Skeleton& skeleton
                                     double to);
 
 /// Jumps along every coordinate that is neither locked nor coupled, one at a time, over its range
-/// and a margin on either side. A range of more than 2π rad or 2 m is reduced to that width about
-/// the default, without margin.
+/// and a margin on either side, at most 2π rad or 2 m in all. A range of more is reduced to that
+/// width about the default, without margin.
 std::vector<LengthJump> lengthJumps(const Model& model, double beyond = 0.3);
 
 /// "the length of BRA jumps by 5.31 mm at elbow_flexion = 0 deg (a conditional point) and its moment
