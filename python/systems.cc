@@ -249,7 +249,9 @@ bio::SimulationOptions during(const bio::Trial& trial, bio::SimulationOptions op
 void defineSystems(py::module_& module) {
   py::class_<bio::Model> model(module, "Model", docstrings::Model);
   model.attr("__module__") = packageName;
-  model.def_readonly("name", &bio::Model::name, docstrings::Model_name)
+  const auto readModel = [](const FileName& file) { return bio::readOsim(file.text); };
+  model.def(py::init(readModel), "file"_a)
+      .def_readonly("name", &bio::Model::name, docstrings::Model_name)
       .def_readonly("warnings", &bio::Model::warnings, docstrings::Model_warnings)
       .def_property_readonly("coordinates", &coordinatesOf, docstrings::Model_coordinates)
       .def_property_readonly("muscles", &musclesOf, docstrings::Model_muscles)
@@ -268,9 +270,7 @@ void defineSystems(py::module_& module) {
         return fmt::format("<fisherhill.Model '{}', {} muscles>", self.name,
                            musclesOf(self).size());
       });
-  module.def(
-      "load_model", [](const FileName& file) { return bio::readOsim(file.text); }, "file"_a,
-      docstrings::load_model);
+  module.def("load_model", readModel, "file"_a, docstrings::load_model);
   py::class_<bio::Trial> trial = defineTrials(module);
   defineReviews(module, model, trial);
   defineWithChoice(module, "replay", &replay, docstrings::replay, "model"_a, "trial"_a,

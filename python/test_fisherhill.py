@@ -3,6 +3,7 @@
 import math
 import os
 import signal
+import pathlib
 import tempfile
 import threading
 import time
@@ -69,6 +70,10 @@ class Arms(unittest.TestCase):
         del columns["elbow_flexion"]
         locked = fh.replay(self.model, fh.make_trial(self.model, columns, hold={"elbow_flexion": 1.0}))
         np.testing.assert_allclose(locked.reaction["elbow_flexion"], held.reaction["elbow_flexion"], atol=1e-9)
+
+    def test_a_model_is_made_of_a_file(self):
+        model = fh.Model(pathlib.Path(ELBOW))
+        self.assertEqual((model.name, model.muscles), (self.model.name, self.model.muscles))
 
     def test_a_motion_that_the_model_prescribes_is_that_of_a_column(self):
         with open(ELBOW, encoding="utf-8") as file:
@@ -297,6 +302,7 @@ class Arms(unittest.TestCase):
         broken = (
             lambda: fh.load_model("no/such.osim"),
             lambda: fh.load_model(SLOW),
+            lambda: fh.Model("no/such.osim"),
             lambda: fh.load_trial(ELBOW, self.model),
             lambda: fh.make_trial(self.model, {"time": [0, 1], "BRA": [0, 2]}),
             lambda: fh.make_trial(self.model, {"time": [0, 0], "BRA": [0, 1]}),

@@ -1,22 +1,26 @@
 # %% [markdown]
 # # FisherHill from Python
 #
-# Run it from the top of the source tree: `PYTHONPATH=build/python/python python3 python/tour.py`. Editors that know
-# cells (`# %%`) show it as a notebook. Everything is in SI units and radians; arrays have one row per time.
+# Run it: `PYTHONPATH=build/python/python python3 python/tour.py`, or, once the package is installed, without the
+# `PYTHONPATH`. Editors that know cells (`# %%`) show it as a notebook. Everything is in SI units and radians; arrays have one row per time.
 
 # %%
+import pathlib
+
 import numpy as np
 
 import fisherhill as fh
 
+# the source tree; cells are run in it
+tree = pathlib.Path(globals().get("__file__", "python/tour.py")).resolve().parents[1]
 degrees = 180 / np.pi
 
 # %% [markdown]
 # ## A muscle model plays a trial
 
 # %%
-model = fh.load_model("models/elbow8.osim")
-trial = fh.load_trial("emg_data/curl_slow.sto", model)
+model = fh.load_model(tree / "models/elbow8.osim")
+trial = fh.load_trial(tree / "emg_data/curl_slow.sto", model)
 motion = fh.replay(model, trial)
 print(model, trial)
 print(f"{motion.steps} steps, final angle {motion.q[-1, 0] * degrees:.1f} deg,",
@@ -51,7 +55,7 @@ assert plan.bound_after[0] < plan.bound_before[0]
 # ## Let the data say what they are, and test on another trial
 
 # %%
-fast = fh.load_trial("emg_data/curl_fast.sto", model)
+fast = fh.load_trial(tree / "emg_data/curl_fast.sto", model)
 fit = fh.calibrate(model, [trial], ["TRI.radius", "hand.mass"], hold_out=[fast])
 for name, fitted in fit.estimates.items():
     print(f"{name:12} {fitted.model:.4g} -> {fitted.value:.4g} ± {fitted.sd:.2g} {fitted.unit}")
@@ -63,7 +67,7 @@ assert fit.rmse_after < fit.rmse_before
 # ## Or is it not the parameters: what does the model lack?
 
 # %%
-hidden = fh.load_trial("emg_data/hidden_a/train_1.sto", model)
+hidden = fh.load_trial(tree / "emg_data/hidden_a/train_1.sto", model)
 found = fh.discover(model, [hidden], noise=0.5 / degrees, max_effects=1)
 print(found.sentence)
 for effect in found.effects:

@@ -279,9 +279,12 @@ std::optional<LeftRange> leftRange(const MusculoskeletalSystem& system,
     look(c.name, q, c.rangeMin - margin, c.rangeMax + margin, [&](double time) {
       return fmt::format(
           "{0} leaves its range, {1:.4g} to {2:.4g} {3}, by more than a tenth of it "
-          "at {4:.3g} s and reaches {5:.4g} to {6:.4g} {3}",
+          "at {4:.3g} s and reaches {5:.4g} to {6:.4g} {3}{7}",
           c.name, c.rangeMin * unit.factor, c.rangeMax * unit.factor, unit.name, time,
-          q.minCoeff() * unit.factor, q.maxCoeff() * unit.factor);
+          q.minCoeff() * unit.factor, q.maxCoeff() * unit.factor,
+          c.isRotation ? ""
+                       : " (no force of the model holds it, and contact is not simulated: lock it, "
+                         "or prescribe it)");
     });
   }
   for (std::size_t i = 0; i < system.numMuscles(); ++i) {

@@ -137,8 +137,20 @@ class Remark:
     message: str
 
 class Model:
-    """A musculoskeletal model, made by load_model, calibrate or discover."""
+    """A musculoskeletal model, read from a file as by load_model, or made by calibrate or discover.
 
+    Parameters
+    ----------
+    file : str or PathLike
+        An OpenSim 3 or 4 model (.osim), a URDF or an MJCF.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, is not a model, or breaks a rule; the line names file and element.
+    """
+
+    def __init__(self, file: _File) -> None: ...
     @property
     def name(self) -> str:
         """Name of the model."""
