@@ -2,8 +2,8 @@
 
 import math
 import os
-import signal
 import pathlib
+import signal
 import tempfile
 import threading
 import time
